@@ -17,7 +17,7 @@ use tracing::info_span;
 use crate::EngineError;
 use crate::edit_job::EditJob;
 use crate::files::{Destination, NewFile, Staging};
-use crate::flow::{colour_hash, with_dye};
+use crate::flow::{ColoursToSave, colour_hash, with_dye};
 use crate::loading::Loaded;
 use crate::memory;
 use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, HandleSlide, Report, finite_or, ms_since};
@@ -122,7 +122,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
 
     let progress = watch.begin("saving");
     let start = Instant::now();
-    let (colours, without_dye) = kept_dye(job, &loaded, apply.morph.is_some())?;
+    let ColoursToSave { colours, lost } = kept_dye(job, &loaded, apply.morph.is_some())?;
     let save = SaveAs {
         inside_out: &setup.inside_out,
         deltas: apply.deltas,
@@ -139,7 +139,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         save_ms,
         check_ms: saved.check_ms,
     };
-    let warnings = saved.warnings.into_iter().chain(without_dye).collect();
+    let warnings = saved.warnings.into_iter().chain(lost).collect();
     let report = report(&loaded, &setup, solution, times, warnings, watch)?;
     let mut staged = saved.staged;
     if let Some(to) = report_to {
@@ -159,20 +159,19 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
 }
 
 /// The vertex colours of a project that has kept dye, or a sentence that says why the output has none.
-fn kept_dye(
-    job: &EditJob<'_>,
-    loaded: &Loaded,
-    as_morph: bool,
-) -> Result<(Option<Vec<[u16; 4]>>, Option<String>), EngineError> {
+fn kept_dye(job: &EditJob<'_>, loaded: &Loaded, as_morph: bool) -> Result<ColoursToSave, EngineError> {
     let Beginning::Project(project) = job.edit else {
-        return Ok((None, None));
+        return Ok(ColoursToSave::default());
     };
     let Some(dye) = project.kept_dye(&loaded.model).map_err(|source| job.refused(source))? else {
-        return Ok((None, None));
+        return Ok(ColoursToSave::default());
     };
     if project.mesh_colours().is_some_and(|own| own != colour_hash(loaded)) {
         let sentence = "FILE has other colours than the project's mesh, so the dye that was kept is left out.";
-        return Ok((None, Some(sentence.to_owned())));
+        return Ok(ColoursToSave {
+            colours: None,
+            lost: Some(sentence.to_owned()),
+        });
     }
     Ok(with_dye(loaded, &dye, job.output, as_morph))
 }

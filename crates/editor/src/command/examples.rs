@@ -3,7 +3,7 @@
 use pliant_deform::ExampleShape;
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
-use crate::workspace::{add_example, examples_name, keep_example, remove_example, rename_example, set_example_weight};
+use crate::workspace::{add_example, keep_example, remove_example, rename_example, set_example_weight};
 
 /// Keeps the present shape as a further example.
 pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
@@ -68,7 +68,7 @@ pub const WITHOUT_EXAMPLES: &str = "The method takes no examples: choose \"Cloth
 /// The reason if the method takes no examples.
 fn without_examples(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
-        let are_taken = examples_name(&state.workspace.document).is_some();
+        let are_taken = state.workspace.document.examples_name().is_some();
         unless(are_taken, WITHOUT_EXAMPLES)
     })
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::handle::{Handle, HandleId};
+use super::handle_curve::HandleCurve;
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -25,13 +26,17 @@ pub struct Animation {
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct KeyFrame {
     /// In seconds, at least 0.
     pub time: f64,
     /// The way to the next key of each handle.
     pub ease: Ease,
     pub(crate) handles: BTreeMap<HandleId, Placed>,
+    /// The shown curves that some of them follow, of those at rest at that time.
+    pub(crate) curves: BTreeMap<HandleId, HandleCurve>,
+    /// The weights of the method's examples, if they bend the surface.
+    pub(crate) weights: Option<Vec<Option<f64>>>,
 }
 
 /// A key of one handle, by its time.
@@ -158,7 +163,12 @@ impl Animation {
         let time = self.tidy(key.time);
         let keys = Arc::make_mut(&mut self.keys);
         match keys.binary_search_by(|other| other.time.total_cmp(&time)) {
-            Ok(place) => keys[place].handles.extend(key.handles),
+            Ok(place) => {
+                let own = &mut keys[place];
+                own.handles.extend(key.handles);
+                own.curves.extend(key.curves);
+                own.weights = key.weights.or(own.weights.take());
+            }
             Err(place) => keys.insert(place, KeyFrame { time, ..key }),
         }
     }
@@ -173,9 +183,18 @@ impl Animation {
                 .into_iter()
                 .partition(|(id, _)| is_taken(*id));
             key.handles = rest;
+            let (curves, rest) = std::mem::take(&mut key.curves)
+                .into_iter()
+                .partition(|(id, _)| is_taken(*id));
+            key.curves = rest;
+            // Weights belong to no handle: they go with the last one.
+            let weights = key.weights.take_if(|_| key.handles.is_empty());
             taken.push(KeyFrame {
+                time: key.time,
+                ease: key.ease,
                 handles: own,
-                ..key.clone()
+                curves,
+                weights,
             });
         }
         keys.retain(|key| !key.handles.is_empty());
@@ -210,9 +229,11 @@ impl Animation {
         }
     }
 
-    /// Keeps the keys' positions of handles when each handle's map of the rest shape becomes the new rest shape.
+    /// Keeps the keys' positions of handles when each handle's map of the rest shape becomes the new rest shape. Their
+    /// curves are those of the former one and go.
     pub(crate) fn rebase(&mut self, handles: &[Handle]) {
         for key in Arc::make_mut(&mut self.keys) {
+            key.curves.clear();
             for handle in handles {
                 if let Some(placed) = key.handles.get_mut(&handle.id) {
                     *placed = placed.rebased(handle.affine(), handle.centre());
@@ -223,7 +244,11 @@ impl Animation {
 
     /// The memory of the keys.
     pub(super) fn bytes(&self) -> usize {
-        let of_key = |key: &KeyFrame| size_of::<KeyFrame>() + key.handles.len() * size_of::<(HandleId, Placed)>();
+        let of_curve = |curve: &HandleCurve| curve.moved().len() * 10 * size_of::<f64>();
+        let of_key = |key: &KeyFrame| {
+            let curves = key.curves.values().map(of_curve).sum::<usize>();
+            size_of::<KeyFrame>() + key.handles.len() * size_of::<(HandleId, Placed)>() + curves
+        };
         self.keys.iter().map(of_key).sum()
     }
 

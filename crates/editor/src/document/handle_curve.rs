@@ -128,22 +128,21 @@ impl HandleCurve {
         self.0.path.largest_turn_rad()
     }
 
+    /// The curve at the share `t` of its way ([`motion_at`](Self::motion_at)).
+    pub(crate) fn part(&self, t: f64) -> Self {
+        if t == 1.0 {
+            return self.clone();
+        }
+        let twist = self.twist_deg().iter().map(|twist| twist * t).collect();
+        let scale = self.scale().iter().map(|scale| 1.0 + (scale - 1.0) * t).collect();
+        self.with(self.0.path.points_at(t), twist, scale)
+            .unwrap_or_else(|| self.clone())
+    }
+
     /// The motion at the share `t` of the way, 0 at rest and 1 at the targets: chords turn, twists grow linearly and so do
     /// scales.
     pub fn motion_at(&self, t: f64) -> CurveMotion {
-        let Parts {
-            motion,
-            path,
-            twist_deg,
-            scale,
-        } = &*self.0;
-        if t == 1.0 {
-            return motion.clone();
-        }
-        let twist: Vec<f64> = twist_deg.iter().map(|twist| twist * t).collect();
-        let scale: Vec<f64> = scale.iter().map(|scale| 1.0 + (scale - 1.0) * t).collect();
-        let part = CurveMotion::new(motion.rest().clone(), path.points_at(t), &twist, &scale);
         // Only a closed curve can come together on its way, where two of its points meet by chance.
-        part.unwrap_or_else(|_| motion.clone())
+        self.part(t).0.motion.clone()
     }
 }

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
-use super::keys::KeyEntry;
+use super::keys::{CurveKey, KeyEntry};
 use super::pivoted::{pivoted, without_pivot};
 use super::setup::Setup;
 use crate::HandleTransform;
 use crate::document::{Animation, Document, HandleId, KeyFrame, Placed, Stance, followed};
-use crate::timeline::poses_at;
+use crate::timeline::{Posed, Timeline};
 
 /// The document's keys of handles, which are in the edit.
 pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
@@ -19,10 +19,18 @@ pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry
             let transform = pivoted(placed.stance.transform, Some(placed.pivot));
             Some((document.handle(*id)?.name.clone(), transform))
         });
+        let curves = handles.iter().filter_map(|id| {
+            let (handle, curve) = (document.handle(*id)?, key.curves.get(id)?);
+            let present = handle.line.as_ref()?.curve()?;
+            (present.rest() == curve.rest()).then(|| (handle.name.clone(), CurveKey::of(curve)))
+        });
+        let count = document.examples().map(|examples| examples.weights.len());
         KeyEntry {
             time: Some(key.time),
             ease: key.ease,
             handles: named.collect(),
+            curves: curves.collect(),
+            weights: key.weights.clone().filter(|weights| Some(weights.len()) == count),
             ..KeyEntry::default()
         }
     };
@@ -35,9 +43,14 @@ pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry
 /// Those of [`EditFile::timed_keys`].
 pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup) -> Result<(), EditError> {
     let id = |handle: usize| HandleId(handle as u16);
-    let placed = |handle: usize, transform: &HandleTransform| {
+    let timeline = match edit.keys.iter().any(|key| key.time.is_some()) {
+        true => edit.timeline(setup)?,
+        false => Timeline::default(),
+    };
+    let share_at = |time: f64| edit.part_before_keys() * timeline.strength_at(time);
+    let placed = |handle: usize, transform: &HandleTransform, time: f64| {
         let pivot = transform.pivot_or(setup.handles[handle].pivot);
-        let transform = without_pivot(transform.part(edit.strength, pivot));
+        let transform = without_pivot(transform.part(share_at(time), pivot));
         let turn_deg = match transform {
             HandleTransform::Trs { rotation, .. } => followed(DVec3::ZERO, rotation),
             HandleTransform::Matrix(_) => DVec3::ZERO,
@@ -51,19 +64,26 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
             time: key.time,
             ease: key.ease,
             handles: handles
-                .map(|(handle, transform)| (id(*handle), placed(*handle, transform)))
+                .map(|(handle, transform)| (id(*handle), placed(*handle, transform, key.time)))
                 .collect(),
+            curves: key
+                .curves
+                .iter()
+                .map(|(handle, curve)| (id(*handle), curve.part(share_at(key.time))))
+                .collect(),
+            weights: key.weights.map(<[_]>::to_vec).map(|mut weights| {
+                if setup.method.examples_bend() {
+                    weights
+                        .iter_mut()
+                        .flatten()
+                        .for_each(|weight| *weight *= share_at(key.time));
+                }
+                weights
+            }),
         }
     });
     let own = Animation::default();
     document.set_animation(Animation::of(keys, own.time(), own.fps()));
-    let posed = poses_at(document.animation(), document.handles(), own.time());
-    document.change_handles(|handles| {
-        for (id, transform) in posed {
-            if let Some(handle) = handles.iter_mut().find(|handle| handle.id == id) {
-                handle.put(transform);
-            }
-        }
-    });
+    Posed::at(document.animation(), document, own.time()).put(document);
     Ok(())
 }

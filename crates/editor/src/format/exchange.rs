@@ -55,6 +55,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     // Keys have no full values.
     let in_full = Some(document.in_full()).filter(|document| !is_keyed && document.goes_the_short_way());
     let strength = if in_full.is_some() { document.strength() } else { 1.0 };
+    // Handles have their shown places then, and curves their full way.
+    let curve_share = if in_full.is_some() { 1.0 } else { document.strength() };
     let document = in_full.as_ref().unwrap_or(document);
     let region = Region::measure(
         &region_input(&**model, document, &FileContacts::default()),
@@ -86,7 +88,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 pose: None,
                 transform: with_pivot(handle),
                 free_along: handle.freedom(),
-                curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
+                curve: handle
+                    .line
+                    .as_ref()
+                    .and_then(HandleLine::curve)
+                    .map(|curve| curve.part(curve_share)),
                 sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
                 soft: handle.soft,
                 continuity: handle.continuity,

@@ -63,6 +63,16 @@ pub struct CurveKey {
 }
 
 impl CurveKey {
+    /// The key of a curve.
+    pub(super) fn of(curve: &HandleCurve) -> Self {
+        let moved = curve.moved().iter().map(|point| Numbers(point.to_array()));
+        Self {
+            moved: Some(moved.collect()),
+            twist: Some(curve.twist_deg().to_vec()),
+            scale: Some(curve.scale().to_vec()),
+        }
+    }
+
     /// The curve of a handle at this key.
     ///
     /// # Errors

@@ -11,10 +11,9 @@ use super::skinned::{Skin, Skinned};
 use super::slot::{Unfinished, Work};
 use super::solving::Wanted;
 use super::work::BindInput;
-use crate::document::{Animation, Aspect, Document, KeyFrame, Placed, Version};
-use crate::ease::Ease;
+use crate::document::{Animation, Aspect, Document, Version};
 use crate::revision::Revision;
-use crate::timeline::poses_at;
+use crate::timeline::{Posed, present_key};
 
 /// The sources of the shapes.
 #[derive(Clone, PartialEq, Debug)]
@@ -98,19 +97,8 @@ fn solved(wanted: Vec<(i8, Wanted)>, bound: &Mutex<Bound>, cancel: &Cancel) -> R
 /// The document's keys, and the one that *Key here* would set, if a handle is not where the keys have it.
 fn with_present(document: &Document) -> Animation {
     let mut animation = document.animation().clone();
-    let handles = document.handles();
-    let mut posed = poses_at(&animation, handles, animation.time()).into_iter();
-    let is_moved = posed.any(|(id, transform)| {
-        let handle = document.handle(id);
-        handle.is_some_and(|handle| handle.affine() != transform.affine(handle.pivot))
-    });
-    if is_moved {
-        let keyed = handles.iter().filter(|handle| !handle.is_pin);
-        animation.put(KeyFrame {
-            time: animation.time(),
-            ease: Ease::default(),
-            handles: keyed.map(|handle| (handle.id, Placed::of(handle))).collect(),
-        });
+    if !Posed::at(&animation, document, animation.time()).is_empty() {
+        animation.put(present_key(document, |_| true));
     }
     animation
 }
@@ -118,13 +106,6 @@ fn with_present(document: &Document) -> Animation {
 /// The document with its handles where the keys have them at a time.
 fn document_at(document: &Document, animation: &Animation, time: f64) -> Document {
     let mut there = document.clone();
-    let posed = poses_at(animation, document.handles(), time);
-    there.change_handles(|handles| {
-        for (id, transform) in posed {
-            if let Some(handle) = handles.iter_mut().find(|handle| handle.id == id) {
-                handle.put(transform);
-            }
-        }
-    });
+    Posed::at(animation, document, time).put(&mut there);
     there
 }

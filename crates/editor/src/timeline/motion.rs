@@ -80,7 +80,7 @@ pub(crate) fn values_of(curve: &HandleCurve) -> Values {
 }
 
 /// The curve with these values; `None` if they make none.
-fn with_values(rest: &HandleCurve, values: &Values) -> Option<HandleCurve> {
+pub(super) fn with_values(rest: &HandleCurve, values: &Values) -> Option<HandleCurve> {
     let (twist, scale) = values.numbers.split_at(values.vectors.len());
     rest.with(values.vectors.clone(), twist.to_vec(), scale.to_vec())
 }

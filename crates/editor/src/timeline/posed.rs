@@ -1,7 +1,16 @@
-//! The handles of a document over time.
+//! The handles and weights of a document over time.
 
+use std::sync::Arc;
+
+use pliant_deform::Attachment;
+
+use super::motion::{values_of, with_values};
+use super::numbers::{NumberTrack, Values};
 use super::track::{Key, Track};
-use crate::document::{Animation, Handle, HandleId, HandleTransform, KeyFrame, SplitTransform};
+use crate::document::{
+    Animation, Document, Handle, HandleCurve, HandleId, HandleLine, HandleTransform, KeyFrame, SplitTransform,
+};
+use crate::ease::Ease;
 
 /// The motion of a handle through these keys, by time; none without a key of it.
 fn track(keys: &[KeyFrame], handle: HandleId) -> Option<Track> {
@@ -17,11 +26,106 @@ fn track(keys: &[KeyFrame], handle: HandleId) -> Option<Track> {
     (!own.is_empty()).then(|| Track::new(own))
 }
 
-/// The transforms about their pivots that handles with keys have at a time in seconds.
-pub(crate) fn poses_at(animation: &Animation, handles: &[Handle], time: f64) -> Vec<(HandleId, HandleTransform)> {
-    let posed = |handle: &Handle| {
-        let transform = track(animation.keys(), handle.id)?.at(time)?;
-        Some((handle.id, transform.about(handle.pivot)))
+/// The track of the values that some keys have.
+fn numbers(keys: &[KeyFrame], of: impl Fn(&KeyFrame) -> Option<Values>) -> NumberTrack {
+    let keyed = |key: &KeyFrame| -> Option<(f64, Ease, Values)> { Some((key.time, key.ease, of(key)?)) };
+    NumberTrack::new(keys.iter().filter_map(keyed).collect())
+}
+
+/// The curve of a handle at a time, if it has keys on the curve at rest that it has now.
+fn curve_at(keys: &[KeyFrame], handle: &Handle, time: f64) -> Option<HandleCurve> {
+    let present = handle.line.as_ref()?.curve()?;
+    let of_key = |key: &KeyFrame| {
+        let own = key.curves.get(&handle.id)?;
+        (own.rest() == present.rest()).then(|| values_of(own))
     };
-    handles.iter().filter_map(posed).collect()
+    let track = numbers(keys, of_key);
+    let (values, before) = track.at(time)?;
+    with_values(present, &values).or_else(|| with_values(present, before))
+}
+
+/// The weights of `count` examples at a time, if they have keys.
+fn weights_at(keys: &[KeyFrame], count: usize, time: f64) -> Option<Vec<Option<f64>>> {
+    let of_key = |key: &KeyFrame| {
+        let weights = key.weights.as_ref().filter(|own| own.len() == count)?;
+        Some(Values {
+            numbers: weights.iter().map(|weight| weight.unwrap_or(f64::NAN)).collect(),
+            vectors: Vec::new(),
+        })
+    };
+    let track = numbers(keys, of_key);
+    let (values, _) = track.at(time)?;
+    let weight = |number: &f64| Some(*number).filter(|number| !number.is_nan());
+    Some(values.numbers.iter().map(weight).collect())
+}
+
+/// The parts of a document that its keys move, where they have them at a moment; only those that are elsewhere now.
+#[derive(Default)]
+pub(crate) struct Posed {
+    transforms: Vec<(HandleId, HandleTransform)>,
+    curves: Vec<(HandleId, HandleCurve)>,
+    weights: Option<(&'static str, Attachment)>,
+}
+
+impl Posed {
+    /// At a time in seconds.
+    pub(crate) fn at(animation: &Animation, document: &Document, time: f64) -> Self {
+        let keys = animation.keys();
+        let mut posed = Self::default();
+        for handle in document.handles() {
+            if let Some(transform) = track(keys, handle.id).and_then(|track| track.at(time)) {
+                let transform = transform.about(handle.pivot);
+                if handle.affine() != transform.affine(handle.pivot) {
+                    posed.transforms.push((handle.id, transform));
+                }
+            }
+            if let Some(curve) = curve_at(keys, handle, time)
+                && handle.line.as_ref().and_then(HandleLine::curve) != Some(&curve)
+            {
+                posed.curves.push((handle.id, curve));
+            }
+        }
+        if let (Some(name), Some(examples)) = (document.examples_name(), document.examples())
+            && let Some(weights) = weights_at(keys, examples.weights.len(), time)
+            && weights != examples.weights
+        {
+            let mut examples = examples.clone();
+            examples.weights = weights;
+            posed.weights = Some((name, Attachment::Shapes(examples)));
+        }
+        posed
+    }
+
+    /// Returns true if everything is there.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.transforms.is_empty() && self.curves.is_empty() && self.weights.is_none()
+    }
+
+    /// Puts everything there. Keys have shown values: if the document shows a share of an edit, that share becomes the
+    /// whole.
+    pub(crate) fn put(self, document: &mut Document) {
+        if self.is_empty() {
+            return;
+        }
+        let share = document.strength();
+        document.change_handles(|handles| {
+            for handle in handles.iter_mut() {
+                if let Some((_, transform)) = self.transforms.iter().find(|(id, _)| *id == handle.id) {
+                    handle.put(*transform);
+                }
+                let keyed = self.curves.iter().find(|(id, _)| *id == handle.id);
+                let own = handle.line.as_ref().and_then(HandleLine::curve);
+                let curve = keyed.map(|(_, curve)| curve.clone()).or_else(|| Some(own?.part(share)));
+                if let Some(curve) = curve {
+                    handle.line = Some(HandleLine::Curve(curve));
+                }
+            }
+        });
+        document.forget_strength();
+        if let Some((name, examples)) = self.weights {
+            let mut attachments = document.attachments().clone();
+            attachments.insert(name, examples);
+            document.set_attachments(Arc::new(attachments));
+        }
+    }
 }

@@ -2,18 +2,10 @@
 
 use std::sync::Arc;
 
-use pliant_deform::{Attachment, AttachmentKind, ExampleShape, Examples};
+use pliant_deform::{Attachment, ExampleShape, Examples};
 
 use super::state::Workspace;
 use crate::document::Document;
-
-/// The declared name of the method's examples, if it takes some.
-pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
-    let mut declared = document.method().declaration().attachments.iter();
-    declared
-        .find(|own| own.kind == AttachmentKind::Shapes)
-        .map(|own| own.name)
-}
 
 /// Keeps the present shape as a further example.
 pub(crate) fn keep_example(workspace: &mut Workspace) {
@@ -74,7 +66,7 @@ pub(crate) fn remove_example(workspace: &mut Workspace, place: usize) {
 
 fn change(workspace: &mut Workspace, name: &'static str, change: impl FnOnce(&mut Examples)) {
     workspace.change(name, |document| {
-        let Some(name) = examples_name(document) else { return };
+        let Some(name) = document.examples_name() else { return };
         let mut examples = document.examples().cloned().unwrap_or_default();
         change(&mut examples);
         let mut attachments = Arc::clone(&document.attachments);

@@ -4,29 +4,21 @@
 //! that moment, in the same step of the history, and the surface is solved for them from the same start as every other
 //! frame. Handles without keys stay.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pliant_deform::Solve;
 
 use super::key_work::Play;
 use super::state::Workspace;
-use crate::document::{Animation, Aspect, HandleId, KeyFrame, KeyId, Placed};
+use crate::document::{Animation, Aspect, HandleId, KeyFrame, KeyId};
 use crate::ease::Ease;
 use crate::jobs::{Activity, JobKind};
-use crate::timeline::poses_at;
+use crate::timeline::{Posed, present_key};
 use crate::view::Look;
 
 /// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
 pub(crate) fn key_here(workspace: &mut Workspace, is_wanted: impl Fn(HandleId) -> bool) {
-    let handles = workspace.document.handles().iter();
-    let keyed = handles.filter(|handle| !handle.is_pin && is_wanted(handle.id));
-    let handles = keyed.map(|handle| (handle.id, Placed::of(handle))).collect();
-    let time = workspace.document.animation().time();
-    let key = KeyFrame {
-        time,
-        ease: Ease::default(),
-        handles,
-    };
+    let key = present_key(&workspace.document, is_wanted);
     workspace.edit_keys("Key here", |animation| Some(animation.put_all(vec![key])));
 }
 
@@ -42,6 +34,10 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
         time: document.animation().time(),
         ease: Ease::default(),
         handles: handles.map(|(id, placed)| (*id, *placed)).collect(),
+        curves: BTreeMap::new(),
+        weights: document
+            .examples_name()
+            .and_then(|name| pose.weights.get(name).cloned()),
     };
     let name = format!("Key {}", pose.name);
     workspace.edit_keys(name, |animation| Some(animation.put_all(vec![key])));
@@ -157,23 +153,13 @@ impl Workspace {
     fn show_moment(&mut self, time: f64) {
         let document = &mut self.document;
         let animation = document.animation().at(time);
-        let mut posed = poses_at(&animation, document.handles(), animation.time());
+        let posed = Posed::at(&animation, document, animation.time());
         document.set_animation(animation);
-        posed.retain(|(id, transform)| {
-            let handle = document.handle(*id);
-            handle.is_some_and(|handle| handle.affine() != transform.affine(handle.pivot))
-        });
         if posed.is_empty() {
             return;
         }
         document.unsettle();
-        document.change_handles(|handles| {
-            for (id, transform) in posed {
-                if let Some(handle) = handles.iter_mut().find(|handle| handle.id == id) {
-                    handle.put(transform);
-                }
-            }
-        });
+        posed.put(document);
         // While the moment is dragged, shapes go on from the last one, so that an iterative method keeps up.
         if !self.is_adjusting() {
             self.jobs.solve_anew(self.document.versions().of(Aspect::Targets));

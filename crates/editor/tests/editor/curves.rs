@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::rig::Rig;
 use glam::{DQuat, DVec3};
-use pliant_editor::{Beginning, Command, Event, HandleLine, MeshReference, Project, geometry_hash};
+use pliant_editor::{Beginning, Command, Event, HandleCurve, HandleLine, MeshReference, Project, geometry_hash};
 use pliant_mesh::shapes;
 use serde_json::json;
 
@@ -130,4 +130,82 @@ fn an_applied_shape_has_its_curve_at_rest_and_a_reset_one_too() {
     rig.drain();
     assert!(!rig.editor.document().handles()[0].is_displaced());
     assert_eq!(rig.largest_displacement(), 0.0);
+}
+
+/// The present curve of the only handle.
+fn present(rig: &Rig) -> HandleCurve {
+    let handle = &rig.editor.document().handles()[0];
+    handle.line.as_ref().and_then(HandleLine::curve).unwrap().clone()
+}
+
+#[test]
+fn keys_hold_curves_which_pass_from_one_to_the_next_and_projects_and_edits_keep_them() {
+    let mut rig = opened("bilaplacian");
+    let bent = present(&rig);
+    rig.command(Command::KeyHere);
+    let go_to = |rig: &mut Rig, time: f64| {
+        rig.command(Command::GoToTime(time));
+        rig.drain();
+    };
+    go_to(&mut rig, 1.0);
+    rig.command(Command::ResetShape);
+    rig.drain();
+    let at_rest = present(&rig);
+    assert!(at_rest.is_rest() && !bent.is_rest());
+    rig.command(Command::KeyHere);
+    for (time, expected) in [(0.0, &bent), (1.0, &at_rest)] {
+        go_to(&mut rig, time);
+        assert_eq!(present(&rig), *expected, "at {time}");
+    }
+    go_to(&mut rig, 0.5);
+    let middle = present(&rig);
+    for ((point, a), b) in middle.moved().iter().zip(bent.moved()).zip(at_rest.moved()) {
+        assert!(
+            point.distance(a.midpoint(*b)) < 1e-12,
+            "a way that begins and ends at rest is half done by half time"
+        );
+    }
+    assert!(rig.largest_displacement() > 0.1, "the surface follows");
+    let shown = rig.fingerprint();
+    rig.undo();
+    rig.redo();
+    rig.drain();
+    assert_eq!(rig.fingerprint(), shown);
+
+    let mesh = MeshReference {
+        name: None,
+        path: None,
+        geometry: geometry_hash(&rig.model),
+    };
+    let animation = rig.editor.document().animation().clone();
+    let project = rig.editor.snapshot().unwrap().project(mesh).to_json();
+    let edit = rig.editor.edit_file().unwrap();
+    open(&mut rig, &project);
+    assert_eq!(*rig.editor.document().animation(), animation);
+    assert_eq!(rig.fingerprint(), shown);
+    open(&mut rig, &edit.to_json());
+    assert_eq!(present(&rig), bent, "an edit shows its beginning");
+    assert_eq!(rig.editor.edit_file().unwrap().keys, edit.keys);
+}
+
+#[test]
+fn a_share_of_a_curve_is_keyed_and_exported_as_it_is_shown() {
+    let mut rig = opened("bilaplacian");
+    let whole = present(&rig);
+    rig.command(Command::SetStrength(0.5));
+    rig.drain();
+    rig.command(Command::KeyHere);
+    let edit = rig.editor.edit_file().unwrap();
+    assert_eq!(edit.strength, 1.0, "keys have no full values");
+    let half = whole.motion_at(0.5);
+    assert_eq!(edit.handles[0].curve.as_ref().unwrap().moved(), half.moved().points());
+    let shape = rig.editor.document().from_file().to_vec();
+    open(&mut rig, &edit.to_json());
+    let again = rig.editor.document().from_file();
+    let apart = again
+        .iter()
+        .zip(&shape)
+        .map(|(a, b)| a.distance(*b))
+        .fold(0.0, f64::max);
+    assert!(apart < 1e-9, "{apart}");
 }

@@ -18,22 +18,28 @@ fn dyed(loaded: &Loaded, dyes: &[Dye]) -> Option<Vec<[u16; 4]>> {
     Colours::of(loaded).with(&dyes, &loaded.model)
 }
 
-/// The colours of a save of a file with dye that was kept over its own: `output` gives the format. A sentence comes
-/// instead if a file of that format can't have them.
-pub fn with_dye(
-    loaded: &Loaded,
-    dyes: &[Dye],
-    output: &Path,
-    as_morph: bool,
-) -> (Option<Vec<[u16; 4]>>, Option<String>) {
+/// Vertex colours to save, if there are some, or a sentence that says why the file can't have them.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct ColoursToSave {
+    /// Linear, from 0 to 65535, one for each drawn vertex.
+    pub colours: Option<Vec<[u16; 4]>>,
+    /// The sentence.
+    pub lost: Option<String>,
+}
+
+/// The colours of a save of a file with dye that was kept over its own: `output` gives the format.
+pub fn with_dye(loaded: &Loaded, dyes: &[Dye], output: &Path, as_morph: bool) -> ColoursToSave {
     let scene = &loaded.scene;
     let holds = Format::of_name(&output.to_string_lossy()).is_ok_and(|format| match as_morph {
         true => coloured::targets_take_colours(scene),
         false => scene.takes_colours(format),
     });
     match dyed(loaded, dyes) {
-        Some(_) if !holds => (None, Some(WITHOUT_COLOURS.to_owned())),
-        colours => (colours, None),
+        Some(_) if !holds => ColoursToSave {
+            colours: None,
+            lost: Some(WITHOUT_COLOURS.to_owned()),
+        },
+        colours => ColoursToSave { colours, lost: None },
     }
 }
 

@@ -22,7 +22,7 @@ use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 use colours::Colours;
 
-pub use colours::{colour_hash, with_dye};
+pub use colours::{ColoursToSave, colour_hash, with_dye};
 pub use flowing::Flowing;
 pub use report::{FlowReport, FromTo};
 

@@ -280,8 +280,8 @@ impl Application {
         let mut in_file = &open.in_file;
         while let InFile::Made(name, former) = in_file {
             lost.insert(0, *name);
-            snapshot = former.restore(&snapshot);
-            in_file = self.session.others.in_file(former.model())?;
+            snapshot = former.restore(&snapshot)?;
+            in_file = self.session.others.in_file(snapshot.model())?;
         }
         let saved = match in_file {
             InFile::AsRead => None,

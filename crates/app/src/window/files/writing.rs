@@ -17,7 +17,7 @@ use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
 use pliant_editor::Beginning;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
-use pliant_engine::flow::with_dye;
+use pliant_engine::flow::{ColoursToSave, with_dye};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::{Animate, EditJob, MORPH_TOLERANCE, memory, stage_animation};
 use pliant_engine::{EngineError, Loaded};
@@ -156,7 +156,7 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
                 name: &stem,
                 weight: 1.0,
             };
-            let (colours, lost) = colours(shape, &mesh.loaded, path, true);
+            let ColoursToSave { colours, lost } = colours(shape, &mesh.loaded, path, true);
             let save = SaveAs {
                 morph: Some(&morph),
                 inside_out: &shape.inside_out,
@@ -207,10 +207,10 @@ fn ready_animation(
     })
 }
 
-/// The colours of a shape with kept dye, or a sentence that says why the file has none.
-fn colours(shape: &Shape, loaded: &Loaded, path: &Path, as_morph: bool) -> (Option<Vec<[u16; 4]>>, Option<String>) {
+/// The colours of a shape with kept dye.
+fn colours(shape: &Shape, loaded: &Loaded, path: &Path, as_morph: bool) -> ColoursToSave {
     let dye = shape.dye.as_ref();
-    dye.map_or((None, None), |dye| with_dye(loaded, dye, path, as_morph))
+    dye.map_or_else(ColoursToSave::default, |dye| with_dye(loaded, dye, path, as_morph))
 }
 
 /// The model, together with the original of the file that it replaces.
@@ -230,7 +230,7 @@ fn ready_model(
     let keeps = model.keep_original == KeepOriginal::Yes || is_source;
     let split = if keeps { 0.5 } else { 1.0 };
     let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-    let (colours, lost) = colours(shape, loaded, path, false);
+    let ColoursToSave { colours, lost } = colours(shape, loaded, path, false);
     let save = SaveAs {
         inside_out: &shape.inside_out,
         colours: colours.as_deref(),

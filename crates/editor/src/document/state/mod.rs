@@ -149,6 +149,14 @@ impl Document {
         &self.content.method
     }
 
+    /// The declared name of the method's examples, if it takes some.
+    pub(crate) fn examples_name(&self) -> Option<&'static str> {
+        let mut declared = self.method.declaration().attachments.iter();
+        declared
+            .find(|own| own.kind == AttachmentKind::Shapes)
+            .map(|own| own.name)
+    }
+
     /// The methods' inputs beside handles.
     pub fn attachments(&self) -> &BTreeMap<&'static str, Attachment> {
         &self.content.attachments

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::place::{StoredPlace, places, stored_places};
-use crate::document::{Animation, KeyFrame};
+use crate::document::{Animation, HandleCurve, HandleId, KeyFrame};
 use crate::ease::Ease;
 use crate::format::edit_error::EditError;
 
@@ -30,6 +30,12 @@ struct StoredKey {
     ease: Ease,
     /// The positions, by the handles' numbers.
     handles: BTreeMap<u32, StoredPlace>,
+    /// The curves, by the handles' numbers.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    curves: BTreeMap<u32, HandleCurve>,
+    /// The weights of the examples.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    weights: Option<Vec<Option<f64>>>,
 }
 
 impl StoredAnimation {
@@ -42,6 +48,12 @@ impl StoredAnimation {
             time: key.time,
             ease: key.ease,
             handles: stored_places(&key.handles),
+            curves: key
+                .curves
+                .iter()
+                .map(|(id, curve)| (u32::from(id.0), curve.clone()))
+                .collect(),
+            weights: key.weights.clone(),
         };
         Some(Self {
             fps: animation.fps(),
@@ -78,6 +90,12 @@ impl StoredAnimation {
             time: key.time,
             ease: key.ease,
             handles: places(&key.handles),
+            curves: key
+                .curves
+                .iter()
+                .filter_map(|(id, curve)| Some((HandleId(u16::try_from(*id).ok()?), curve.clone())))
+                .collect(),
+            weights: key.weights.clone(),
         };
         Ok(Animation::of(self.keys.iter().map(key), self.time, self.fps))
     }

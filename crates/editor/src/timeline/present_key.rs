@@ -1,0 +1,25 @@
+//! The key of the shown moment, with everything as it is shown.
+
+use crate::document::{Document, HandleId, HandleLine, KeyFrame, Placed};
+
+/// The present transforms and curves of the handles that are wanted, pins apart, and the weights of examples that bend
+/// the surface. If the shown ones are a share of an edit, the key has the shown ones.
+pub(crate) fn present_key(document: &Document, is_wanted: impl Fn(HandleId) -> bool) -> KeyFrame {
+    let wanted = || {
+        let handles = document.handles().iter();
+        handles.filter(|handle| !handle.is_pin && is_wanted(handle.id))
+    };
+    let share = document.strength();
+    let curves = wanted().filter_map(|handle| {
+        let curve = handle.line.as_ref().and_then(HandleLine::curve)?;
+        Some((handle.id, curve.part(share)))
+    });
+    let examples = document.examples().filter(|_| document.method().examples_bend());
+    KeyFrame {
+        time: document.animation().time(),
+        handles: wanted().map(|handle| (handle.id, Placed::of(handle))).collect(),
+        curves: curves.collect(),
+        weights: examples.map(|examples| examples.weights.clone()),
+        ..KeyFrame::default()
+    }
+}
