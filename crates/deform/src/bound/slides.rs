@@ -23,7 +23,7 @@ const REACH: f64 = 0.5;
 const DIRECT: f64 = 1e-6;
 
 /// .. and for those that descend, whose energies have an error.
-const ITERATIVE: f64 = 1e-3;
+const ITERATIVE: f64 = 4e-3;
 
 /// Energies below this, times the square of the handles' motion relative to their distance, are rounding.
 const NOTHING: f64 = 1e-14;

@@ -107,14 +107,15 @@ impl Bound {
             let Some(search) = &mut slides.search else { break };
             search.steps += 1;
             let is_found = search.valley.is_found();
-            let shown = match &search.lowest {
+            let (shown, is_trial) = match &search.lowest {
                 Some((lowest, shape)) if !is_found => {
                     displacements.copy_from_slice(shape);
-                    lowest
+                    (lowest, true)
                 }
-                _ => &step,
+                _ => (&step, false),
             };
             result = Some(Step {
+                is_trial,
                 converged: is_found && shown.converged,
                 finished: is_found && shown.finished,
                 iteration: search.steps,
