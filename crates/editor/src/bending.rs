@@ -16,6 +16,9 @@ const VERTEX_STEPS: usize = 100_000;
 /// The most steps of one frame, even with few vertices.
 const MOST_STEPS: usize = 16;
 
+/// In a frame this many steps that change nothing visible count as one.
+const TRIALS: usize = 4;
+
 /// In a frame the solution at a kept shape gets this many times the steps of another: it is so close to the end of the
 /// descent that the drag hides the rest.
 const MOST_FIRST_ROUNDS: usize = 8;
@@ -332,8 +335,8 @@ fn steps(
 }
 
 /// Steps towards the set targets until the shape has converged or met the limit of the method's options, or at the
-/// latest after `most` steps. `displacements` has one entry per surface vertex. Stops after the step during which
-/// `cancel` was raised.
+/// latest after `most` steps, of which [`TRIALS`] that change nothing visible count as one. `displacements` has one entry
+/// per surface vertex. Stops after the step during which `cancel` was raised.
 ///
 /// # Errors
 /// Those of [`Bound::step`].
@@ -343,12 +346,12 @@ pub fn settle(
     most: usize,
     cancel: &Cancel,
 ) -> Result<Step, SolveError> {
-    let mut step = bound.step(displacements)?;
-    for _ in 1..most {
-        if step.finished || cancel.is_cancelled() {
-            break;
+    let mut left = most.saturating_mul(TRIALS);
+    loop {
+        let step = bound.step(displacements)?;
+        left = left.saturating_sub(if step.is_trial { 1 } else { TRIALS });
+        if step.finished || left == 0 || cancel.is_cancelled() {
+            return Ok(step);
         }
-        step = bound.step(displacements)?;
     }
-    Ok(step)
 }

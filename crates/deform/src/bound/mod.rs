@@ -261,6 +261,7 @@ impl Bound {
             energy: 0.0,
             iteration: self.iteration,
             handle_residual: 0.0,
+            is_trial: false,
         };
         if self.is_at_rest() {
             clear(displacements);

@@ -23,7 +23,13 @@ const REACH: f64 = 0.5;
 const DIRECT: f64 = 1e-6;
 
 /// .. and for those that descend, whose energies have an error.
-const ITERATIVE: f64 = 1e-3;
+const ITERATIVE: f64 = 4e-3;
+
+/// A place is judged once this many steps in a row ..
+const LEVEL_STEPS: u32 = 4;
+
+/// .. lower the energy by less than this share, which is an error of the place far below [`ITERATIVE`].
+const LEVEL: f64 = 1e-5;
 
 /// Energies below this, times the square of the handles' motion relative to their distance, are rounding.
 const NOTHING: f64 = 1e-14;
@@ -62,6 +68,8 @@ pub(super) struct Search {
     pub lowest: Option<(Step, Vec<DVec3>)>,
     /// The number of steps so far.
     pub steps: u32,
+    /// The energy of the last step at the point, and the number of steps that have hardly lowered it.
+    level: (f64, u32),
     /// True if a shape had an energy.
     pub has_energy: bool,
 }
@@ -94,6 +102,7 @@ impl Slides {
             valley: Valley::new(from.collect(), accuracy),
             lowest: None,
             steps: 0,
+            level: (f64::INFINITY, 0),
             has_energy: false,
         });
     }
@@ -133,11 +142,22 @@ impl Slides {
         motions
     }
 
-    /// Takes a finished shape at the search's point. `displacements` are those of an iterative method, which shows its
+    /// Takes a step at the search's point. Returns true if the shape there is good enough to judge the place.
+    pub fn is_judged(&mut self, step: &Step) -> bool {
+        let Some(search) = &mut self.search else { return true };
+        search.steps += 1;
+        let (before, count) = search.level;
+        let is_level = before - step.energy <= LEVEL * step.energy;
+        search.level = (step.energy, if is_level { count + 1 } else { 0 });
+        step.finished || search.level.1 >= LEVEL_STEPS
+    }
+
+    /// Takes a judged shape at the search's point. `displacements` are those of an iterative method, which shows its
     /// lowest shape.
     pub fn take(&mut self, step: Step, displacements: Option<&[DVec3]>) {
         let Some(search) = &mut self.search else { return };
         let point = search.valley.point();
+        search.level = (f64::INFINITY, 0);
         search.has_energy |= step.energy > 0.0;
         if !search.valley.take(step.energy) {
             return;

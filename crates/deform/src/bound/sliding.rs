@@ -101,20 +101,20 @@ impl Bound {
         while slides.is_searching() {
             self.put_motions(slides.motions());
             let step = self.frame(displacements, way)?;
-            if step.finished {
+            if slides.is_judged(&step) {
                 slides.take(step, (!is_direct).then_some(displacements));
             }
-            let Some(search) = &mut slides.search else { break };
-            search.steps += 1;
+            let Some(search) = &slides.search else { break };
             let is_found = search.valley.is_found();
-            let shown = match &search.lowest {
+            let (shown, is_trial) = match &search.lowest {
                 Some((lowest, shape)) if !is_found => {
                     displacements.copy_from_slice(shape);
-                    lowest
+                    (lowest, true)
                 }
-                _ => &step,
+                _ => (&step, false),
             };
             result = Some(Step {
+                is_trial,
                 converged: is_found && shown.converged,
                 finished: is_found && shown.finished,
                 iteration: search.steps,
@@ -126,12 +126,27 @@ impl Bound {
         }
         let step = match result {
             Some(step) => step,
-            None => self.frame(displacements, way)?,
+            None => self.settled_frame(slides, displacements, way)?,
         };
         if slides.is_undecided() {
             let free = slides.free.iter();
             self.warnings
                 .extend(free.map(|free| Warning::of_handle(free.handle, undecided)));
+        }
+        Ok(step)
+    }
+
+    /// A step at the end of the search, which takes the shape there to its own end.
+    fn settled_frame(
+        &mut self,
+        slides: &mut Slides,
+        displacements: &mut [DVec3],
+        way: Way,
+    ) -> Result<Step, SolveError> {
+        let mut step = self.frame(displacements, way)?;
+        if let Some(search) = &mut slides.search {
+            search.steps += 1;
+            step.iteration = search.steps;
         }
         Ok(step)
     }

@@ -18,4 +18,6 @@ pub struct Step {
     /// The largest distance of a hard handle's vertex from its target by the handle's transform, in world units: 0 for
     /// every method that holds handles exactly.
     pub handle_residual: f64,
+    /// True if the step tried another place of a free handle, so that the displacements are those of an earlier step.
+    pub is_trial: bool,
 }

@@ -1,7 +1,7 @@
 //! Commands on the curve of the selected handle.
 
 use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
-use crate::workspace::{divide_curve, remove_curve_points, selected_curve};
+use crate::workspace::{divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve};
 
 /// Lets the points of curves follow a dragged one at their distances, or no longer.
 pub(super) const TOGGLE_CHAIN: Entry<()> = Entry {
@@ -55,14 +55,30 @@ pub(super) const REMOVE_CURVE_POINTS: Entry<()> = Entry {
         &[],
     )],
     scope: Scope::Document,
-    unavailable: |state, ()| {
-        without_curve(state).or_else(|| {
-            let is_selected = !state.workspace.controls.is_empty();
-            unless(is_selected, "No point of the curve is selected: click one.")
-        })
-    },
+    unavailable: |state, ()| without_curve_points(state),
     action: Action::Do(|context, ()| remove_curve_points(context.workspace)),
 };
+
+/// Pins control points, or unpins them.
+pub(super) const PIN_CURVE_POINTS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Pin or unpin curve points",
+        "Pins the selected points of the curve, or unpins them: a pinned point stays while *Chain* pulls another one.",
+        "hold joint elbow ik inverse kinematics chain spine",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| without_curve_points(state),
+    action: Action::Do(|context, ()| pin_or_unpin_curve_points(context.workspace)),
+};
+
+fn without_curve_points(state: &State<'_>) -> Option<Reason> {
+    without_curve(state).or_else(|| {
+        let is_selected = !state.workspace.controls.is_empty();
+        unless(is_selected, "No point of the curve is selected: click one.")
+    })
+}
 
 fn without_curve(state: &State<'_>) -> Option<Reason> {
     let has_curve = selected_curve(state.workspace).is_some();

@@ -259,6 +259,8 @@ commands! {
     DivideCurve = curves::DIVIDE_CURVE;
     /// Removes the selected points of the selected handle's curve.
     RemoveCurvePoints = curves::REMOVE_CURVE_POINTS;
+    /// Pins the selected points of the selected handle's curve, or unpins them.
+    PinCurvePoints = curves::PIN_CURVE_POINTS;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// The gizmo's mode.

@@ -10,12 +10,13 @@ use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 #[derive(Clone, PartialEq, Debug)]
 pub struct HandleCurve(Arc<Parts>);
 
-#[derive(PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 struct Parts {
     motion: CurveMotion,
     path: CurvePath,
     twist_deg: Vec<f64>,
     scale: Vec<f64>,
+    pinned: Vec<u32>,
 }
 
 impl HandleCurve {
@@ -53,7 +54,27 @@ impl HandleCurve {
             path,
             twist_deg,
             scale,
+            pinned: Vec::new(),
         })))
+    }
+
+    /// The same with pinned control points, by their numbers: they stay when another one is pulled as in a chain. Numbers
+    /// of no point are left out.
+    #[must_use]
+    pub fn pinned_at(mut self, mut points: Vec<u32>) -> Self {
+        let count = self.rest().points().len();
+        points.retain(|point| (*point as usize) < count);
+        points.sort_unstable();
+        points.dedup();
+        if points != self.0.pinned {
+            Arc::make_mut(&mut self.0).pinned = points;
+        }
+        self
+    }
+
+    /// The numbers of the pinned control points, ascending.
+    pub fn pinned(&self) -> &[u32] {
+        &self.0.pinned
     }
 
     /// The curve at rest.
@@ -103,14 +124,15 @@ impl HandleCurve {
             vec![0.0; count],
             vec![1.0; count],
         );
-        resting.unwrap_or_else(|_| self.clone())
+        resting.map_or_else(|_| self.clone(), |curve| curve.pinned_at(self.pinned().to_vec()))
     }
 
     /// The curve with the same rest whose control points go to `moved` with these twists and scales; `None` if it would
     /// be no curve.
     pub(crate) fn with(&self, moved: Vec<DVec3>, twist_deg: Vec<f64>, scale: Vec<f64>) -> Option<Self> {
         let rest = self.rest();
-        Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()
+        let curve = Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()?;
+        Some(curve.pinned_at(self.pinned().to_vec()))
     }
 
     /// Its mirror image across a plane.
@@ -120,7 +142,8 @@ impl HandleCurve {
         let twist_deg = self.twist_deg().iter().map(|twist| -twist).collect();
         let points = mirrored(rest.points());
         let moved = mirrored(self.moved());
-        Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()
+        let curve = Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()?;
+        Some(curve.pinned_at(self.pinned().to_vec()))
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

@@ -1,4 +1,4 @@
-//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist` and `scale`.
+//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale` and `pinned`.
 
 use glam::DVec3;
 use serde::de::{Deserializer, Error};
@@ -21,6 +21,8 @@ struct StoredCurve {
     twist: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     scale: Option<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pinned: Vec<u32>,
 }
 
 impl Serialize for HandleCurve {
@@ -36,6 +38,7 @@ impl Serialize for HandleCurve {
             moved: (self.moved() != points).then(|| numbers(self.moved())),
             twist: unless(self.twist_deg(), 0.0),
             scale: unless(self.scale(), 1.0),
+            pinned: self.pinned().to_vec(),
         };
         stored.serialize(serializer)
     }
@@ -48,6 +51,11 @@ impl<'de> Deserialize<'de> for HandleCurve {
             |numbers: Vec<Numbers<3>>| -> Vec<DVec3> { numbers.into_iter().map(|own| own.0.into()).collect() };
         let points = vectors(stored.points);
         let count = points.len();
+        if let Some(point) = stored.pinned.iter().find(|point| **point as usize >= count) {
+            return Err(D::Error::custom(format!(
+                "can't be followed: its `pinned` has the point {point}, but there are {count}, counted from 0"
+            )));
+        }
         let curve = Self::new(
             points.clone(),
             stored.closed,
@@ -55,6 +63,7 @@ impl<'de> Deserialize<'de> for HandleCurve {
             stored.twist.unwrap_or_else(|| vec![0.0; count]),
             stored.scale.unwrap_or_else(|| vec![1.0; count]),
         );
+        let curve = curve.map(|curve| curve.pinned_at(stored.pinned));
         curve.map_err(|(list, refused)| D::Error::custom(format!("can't be followed: its `{list}` {refused}")))
     }
 }

@@ -33,6 +33,7 @@ mod outline;
 mod overlay;
 mod paint;
 mod pose;
+mod pulled_curve;
 mod rim;
 mod settings;
 mod size;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::pulled_chain;
 
+use super::pulled_curve::pulled_at;
 use crate::document::{HandleCurve, HandleId, put_curve};
 use crate::workspace::{ControlSource, Workspace, middle, put_attachment};
 
@@ -126,7 +126,7 @@ impl MovedControls {
         let mut seen: Vec<DVec3> = curve.moved().iter().map(|p| then.transform_point3(*p)).collect();
         match self.points.as_slice() {
             [(point, from)] if self.is_chain && !curve.rest().is_closed() => {
-                seen = pulled_at(&seen, *point as usize, *from + way(*from));
+                seen = pulled_at(&seen, curve.pinned(), *point as usize, *from + way(*from));
             }
             points => {
                 for (point, from) in points {
@@ -144,51 +144,10 @@ impl MovedControls {
     }
 }
 
-/// A chain with the given point pulled to a target: its first point stays, and the points beyond the pulled one keep
-/// their distances from it. The first point pulls the chain from its other end.
-fn pulled_at(chain: &[DVec3], point: usize, target: DVec3) -> Vec<DVec3> {
-    if point == 0 {
-        let reversed: Vec<DVec3> = chain.iter().rev().copied().collect();
-        let mut pulled = pulled_chain(&reversed, target);
-        pulled.reverse();
-        return pulled;
-    }
-    let mut pulled = pulled_chain(&chain[..=point], target);
-    let way = pulled[point] - chain[point];
-    pulled.extend(chain[point + 1..].iter().map(|p| *p + way));
-    pulled
-}
-
 /// Gives a handle a curve, if it is one.
 fn put(workspace: &mut Workspace, handle: HandleId, curve: Option<HandleCurve>) {
     if let Some(curve) = curve {
         workspace.refusal = None;
         put_curve(&mut workspace.document, handle, curve);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use super::pulled_at;
-
-    #[test]
-    fn a_pulled_chain_keeps_its_lengths_wherever_it_is_pulled() {
-        let chain: Vec<DVec3> = (0..5)
-            .map(|x| DVec3::new(f64::from(x), 0.1 * f64::from(x * x), 0.0))
-            .collect();
-        let lengths =
-            |chain: &[DVec3]| -> Vec<f64> { chain.windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
-        for point in 0..5 {
-            let target = chain[point] * 0.6 + DVec3::new(0.2, 0.15, 0.1);
-            let pulled = pulled_at(&chain, point, target);
-            // One segment alone reaches nothing but its circle.
-            let is_reached = pulled[point].distance(target) < 1e-6;
-            assert_eq!(is_reached, point != 1, "{point}: {}", pulled[point]);
-            for (before, after) in lengths(&chain).into_iter().zip(lengths(&pulled)) {
-                assert!((before - after).abs() < 1e-9, "{point}");
-            }
-        }
     }
 }

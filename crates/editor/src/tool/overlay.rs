@@ -179,12 +179,17 @@ impl Overlay {
         };
         self.hidden.look(&shown.positions, workspace, view);
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let pinned = match &shown.source {
+            ControlSource::Curve(_, curve, _) => curve.pinned(),
+            ControlSource::Attachment(..) => &[],
+        };
         let points = shown.positions.iter().zip(self.hidden.are_hidden()).zip(0..);
         self.control_points
             .extend(points.map(|((&position, &is_hidden), number)| ShownPoint {
                 position,
                 is_hidden,
                 is_selected: workspace.controls.contains(number),
+                is_pinned: pinned.contains(&number),
                 is_pointed_at: false,
             }));
         let near = |px| control_at(&self.control_points, px, camera, viewport_px);

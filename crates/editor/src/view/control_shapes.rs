@@ -51,6 +51,7 @@ const HIDDEN_SHARE: f32 = 0.35;
 pub(crate) struct ShownPoint {
     pub(crate) position: DVec3,
     pub(crate) is_selected: bool,
+    pub(crate) is_pinned: bool,
     pub(crate) is_hidden: bool,
     pub(crate) is_pointed_at: bool,
 }
@@ -62,15 +63,20 @@ const CURVE_HIDDEN_SHARE: f32 = 0.75;
 const POINT: [u8; 4] = [120, 180, 255, 255];
 const SELECTED: [u8; 4] = [255, 150, 30, 255];
 const RIM: [u8; 4] = [18, 24, 36, 255];
+const PIN: [u8; 4] = [250, 250, 250, 255];
 
 /// Half the side of a point's square, and the width of its rim, in points of the view.
 const HALF_PX: f64 = 3.6;
 const RIM_PX: f64 = 1.3;
 
+/// The width of the frame around a pinned point.
+const PIN_PX: f64 = 3.2;
+
 /// The pointer's distance to a point within which it takes the point.
 const GRAB_PX: f64 = 8.0;
 
-/// The shapes: edges, the points' rims, points and selected ones. A curve inside a limb is visible through it.
+/// The shapes: edges, the frames of pinned points, the points' rims, points and selected ones. A curve inside a limb is
+/// visible through it.
 pub(crate) fn control_shapes(
     points: &[ShownPoint],
     lines: Vec<[DVec3; 2]>,
@@ -92,6 +98,7 @@ pub(crate) fn control_shapes(
     };
     let shapes = [
         ControlShape::lines(colour, lines),
+        squares(PIN, PIN_PX, &|point| point.is_pinned),
         squares(RIM, RIM_PX, &|_| true),
         squares(POINT, 0.0, &|point| !point.is_selected),
         squares(SELECTED, 0.0, &|point| point.is_selected),

@@ -1,7 +1,7 @@
 //! Changes of the control points of the selected handle's curve: more of them, or fewer.
 
 use super::state::Workspace;
-use crate::document::{HandleCurve, HandleId, put_curve};
+use crate::document::{HandleCurve, HandleId, HandleLine, put_curve};
 
 /// The most control points of a curve that is drawn and divided by hand.
 const MOST_POINTS: usize = 64;
@@ -63,6 +63,36 @@ pub(crate) fn remove_curve_points(workspace: &mut Workspace) {
     lists.put(workspace, "Delete curve points", handle, curve.rest().is_closed());
 }
 
+/// Pins the selected control points, or unpins them if all of them are pinned.
+pub(crate) fn pin_or_unpin_curve_points(workspace: &mut Workspace) {
+    let Some((handle, curve)) = selected_curve(workspace) else {
+        return;
+    };
+    let selected = workspace.controls.points();
+    let mut pinned = curve.pinned().to_vec();
+    let are_pinned = selected.iter().all(|point| pinned.contains(point));
+    let name = if are_pinned {
+        "Unpin curve points"
+    } else {
+        "Pin curve points"
+    };
+    match are_pinned {
+        true => pinned.retain(|point| !selected.contains(point)),
+        false => pinned.extend(selected),
+    }
+    let twin = workspace.document.handle(handle).and_then(|handle| handle.twin);
+    workspace.change(name, |document| {
+        for id in std::iter::once(handle).chain(twin.map(|twin| twin.handle)) {
+            document.change_handle(id, |handle| {
+                let curve = handle.line.as_ref().and_then(HandleLine::curve).cloned();
+                handle.line = curve
+                    .map(|curve| HandleLine::Curve(curve.pinned_at(pinned.clone())))
+                    .or(handle.line.take());
+            });
+        }
+    });
+}
+
 /// The selected handle with its curve.
 pub(crate) fn selected_curve(workspace: &Workspace) -> Option<(HandleId, HandleCurve)> {
     let handle = workspace.selected()?;
@@ -76,10 +106,14 @@ struct Lists {
     moved: Vec<glam::DVec3>,
     twist_deg: Vec<f64>,
     scale: Vec<f64>,
+    pinned: Vec<u32>,
 }
 
 impl Lists {
     fn copy(&mut self, curve: &HandleCurve, point: usize) {
+        if curve.pinned().contains(&(point as u32)) {
+            self.pinned.push(self.points.len() as u32);
+        }
         self.points.push(curve.rest().points()[point]);
         self.moved.push(curve.moved()[point]);
         self.twist_deg.push(curve.twist_deg()[point]);
@@ -91,6 +125,7 @@ impl Lists {
         let curve = HandleCurve::new(self.points, is_closed, self.moved, self.twist_deg, self.scale);
         let Ok(curve) = curve else { return };
         workspace.controls.put([]);
+        let curve = curve.pinned_at(self.pinned);
         workspace.change(name, |document| put_curve(document, handle, curve));
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::rig::{Fingerprint, Rig, VIEWPORT_PX};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
+use pliant_editor::{Command, EditFile, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
 use pliant_mesh::shapes;
 
 /// A tube along the view's horizontal axis that bends by ARAP.
@@ -99,6 +99,52 @@ fn a_spine_runs_through_the_middle_of_the_limb_which_follows_its_end_as_a_chain(
     rig.redo();
     rig.drain();
     assert_eq!(Fingerprint::of(rig.editor.document()), after);
+}
+
+#[test]
+fn a_pinned_point_stays_while_the_end_is_pulled_and_pins_are_undone_and_kept() {
+    let mut rig = tube();
+    stroke(&mut rig, StrokeShape::Spine, 0.4, 0.97);
+    let at_rest = curve(&rig);
+    let elbow = at_rest.rest().points().len() / 2;
+    let elbow_px = px(&rig, at_rest.moved()[elbow]);
+    rig.swipe(&[elbow_px]);
+    rig.command(Command::PinCurvePoints);
+    rig.drain();
+    assert_eq!(curve(&rig).pinned(), [elbow as u32]);
+    assert_eq!(rig.largest_displacement(), 0.0);
+
+    let from_px = px(&rig, *at_rest.moved().last().unwrap());
+    rig.swipe(&[
+        from_px,
+        from_px + DVec2::new(-20.0, -50.0),
+        from_px + DVec2::new(-30.0, -90.0),
+    ]);
+    rig.drain();
+    let moved = curve(&rig);
+    assert_eq!(
+        moved.moved()[..=elbow],
+        at_rest.moved()[..=elbow],
+        "all up to the pin stays"
+    );
+    assert_ne!(moved.moved()[elbow + 1..], at_rest.moved()[elbow + 1..]);
+    for (now, then) in lengths(moved.moved()).into_iter().zip(lengths(at_rest.moved())) {
+        assert!((now - then).abs() < 1e-9 * then, "{now} {then}");
+    }
+    let edit = EditFile::parse(&rig.editor.edit_file().unwrap().to_json()).unwrap();
+    assert_eq!(edit.handles[0].curve.as_ref().unwrap().pinned(), [elbow as u32]);
+
+    rig.undo();
+    assert_eq!(curve(&rig).pinned(), [elbow as u32]);
+    rig.undo();
+    assert!(curve(&rig) == at_rest);
+    rig.redo();
+    rig.drain();
+    assert_eq!(curve(&rig).pinned(), [elbow as u32]);
+    rig.swipe(&[elbow_px]);
+    rig.command(Command::PinCurvePoints);
+    assert_eq!(rig.editor.view().problem, None);
+    assert!(curve(&rig).pinned().is_empty(), "the same command unpins it");
 }
 
 #[test]

@@ -66,7 +66,11 @@ fn curve(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     if command_choice(ui, editor, &Command::ToggleChain, editor.view().chain) {
         commands.push(Command::ToggleChain);
     }
-    for command in [Command::DivideCurve, Command::RemoveCurvePoints] {
+    for command in [
+        Command::DivideCurve,
+        Command::RemoveCurvePoints,
+        Command::PinCurvePoints,
+    ] {
         if command_button(ui, editor, &command) {
             commands.push(command);
         }
