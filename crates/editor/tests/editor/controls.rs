@@ -21,7 +21,8 @@ fn ball(method: &str) -> Rig {
 /// The control points' places on the screen, unselected ones first.
 fn points_px(rig: &Rig) -> Vec<DVec2> {
     let view = rig.editor.view();
-    let squares = view.controls[2..].iter().flat_map(|shape| shape.triangles.chunks(2));
+    // After the edges, the frames of pinned points and the rims.
+    let squares = view.controls[3..].iter().flat_map(|shape| shape.triangles.chunks(2));
     let middles = squares.map(|square| (square[0][0] + square[0][2]) * 0.5);
     middles.map(|p| view.camera.project(p, VIEWPORT_PX).unwrap()).collect()
 }
