@@ -335,7 +335,7 @@ fn steps(
 }
 
 /// Steps towards the set targets until the shape has converged or met the limit of the method's options, or at the
-/// latest after `most` steps, of which [`TRIALS`] that change nothing visible count as one. `displacements` has one entry
+/// latest after `most` steps, of which four that change nothing visible count as one. `displacements` has one entry
 /// per surface vertex. Stops after the step during which `cancel` was raised.
 ///
 /// # Errors
