@@ -95,7 +95,7 @@ impl Fluid {
 }
 
 /// The dye that gives `whole` over `under`: the rest of a dye of which a part is in the file already. Where `under` covers
-/// everything, its own part can't be told any more, and the whole is the answer unless they are equal.
+/// everything, nothing tells how much of the whole lies above it: the answer is the whole, or nothing if they are equal.
 pub(crate) fn without(whole: Dye, under: Dye) -> Dye {
     if whole == under {
         return [0.0; 4];

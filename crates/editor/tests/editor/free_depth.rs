@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, EditError, EditFile, Event, GizmoPart, HandleId, Key, NamedView, Paint, Start, Until};
+use pliant_editor::{
+    Beginning, Command, EditError, EditFile, Event, GizmoPart, HandleId, Key, MeshReference, NamedView, Paint, Start,
+    Until, geometry_hash,
+};
 use pliant_mesh::{Cancel, Progress, shapes};
 
 use crate::rig::{CENTRE_PX, ITERATED, Rig, VIEWPORT_PX};
@@ -156,6 +159,27 @@ fn an_exported_edit_and_a_project_keep_the_freedom_and_give_the_shape() {
         if method == "bilaplacian" {
             assert!(apart < 1e-9, "{apart:e}");
         }
+        let mesh = MeshReference {
+            name: None,
+            path: Some("bar.off".to_owned()),
+            geometry: geometry_hash(&rig.model),
+        };
+        let text = rig.editor.snapshot().unwrap().project(mesh).to_json();
+        let handles = rig.editor.document().handles().to_vec();
+        assert!(handles[0].free_along.is_some());
+        rig.send(Event::Opened {
+            model: Arc::clone(&rig.model),
+            name: "bar".to_owned(),
+            beginning: Some(Beginning::parse(&text).unwrap()),
+        });
+        rig.drain();
+        assert_eq!(rig.editor.document().handles(), handles, "{method}");
+        let again = rig.editor.document().from_rest();
+        assert_eq!(
+            farthest(again, &shown),
+            0.0,
+            "{method}: a project has the shape to the bit"
+        );
     }
 }
 
