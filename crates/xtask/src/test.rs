@@ -76,7 +76,15 @@ fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdic
     ];
     queue.extend(programs.others.iter().map(|name| tests(name, &["--test", name])));
     // Two builds at once would wait for each other. Examples are left out: no test runs one, and clippy compiles them.
-    let all = ["test", "--locked", "--workspace", "--lib", "--bins", "--tests", "--no-run"];
+    let all = [
+        "test",
+        "--locked",
+        "--workspace",
+        "--lib",
+        "--bins",
+        "--tests",
+        "--no-run",
+    ];
     process::succeed(&mut process::cargo(&all))?;
     verdict.tests_at_once(queue, AT_ONCE);
     Ok(())

@@ -43,7 +43,14 @@ pub fn tests(verdict: &mut Verdict) {
 
 fn run(python: &Path) -> Result<(), String> {
     // With the tests, because other features than theirs would build the dependencies a second time.
-    succeed(&mut cargo(&["build", "--locked", "--workspace", "--lib", "--bins", "--tests"]))?;
+    succeed(&mut cargo(&[
+        "build",
+        "--locked",
+        "--workspace",
+        "--lib",
+        "--bins",
+        "--tests",
+    ]))?;
     let built = target_folder().join("debug");
     let folder = lay_out(&built)?;
     let mut pytest = Command::new(python);
