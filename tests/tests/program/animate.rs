@@ -286,6 +286,14 @@ fn numbered_files_replace_others_only_on_request() {
     animate(&folder, &edit, "f-####.off", &["--fps", "8", "--replace"]).done();
     assert_ne!(fs::read(folder.at("f-0003.off")).unwrap(), b"somebody's");
     animate(&folder, &edit, "f-####.off", &["--fps", "8"]).refused(2, &["5 numbered files,", "f-0000.off"]);
+    // Those of a longer animation stay, and are named.
+    let shorter = animate(&folder, &edit, "f-####.off", &["--fps", "4", "--replace"]).done();
+    assert!(
+        shorter.err.contains("2 files from f-0003.off to f-0004.off"),
+        "{}",
+        shorter.err
+    );
+    assert!(folder.at("f-0004.off").exists());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::overlay::Lit;
 use crate::input::{Button, Pointer};
 use crate::stitching::{CutPlane, KeptSide, MeshChange};
 use crate::view::{Cursor, View};
-use crate::workspace::{Workspace, stitch};
+use crate::workspace::{Workspace, held_parts, spared_by_cuts, stitch};
 
 /// A shorter line, in points, has no sure direction.
 const SHORTEST_PX: f64 = 8.0;
@@ -22,14 +22,19 @@ pub(crate) struct CutLine {
     to_px: DVec2,
     /// The positive side is to the left of the line, seen along it.
     kept: KeptSide,
+    /// The name of the handle whose part alone is cut.
+    only: Option<String>,
 }
 
 impl CutLine {
-    pub(super) fn begin(pointer: Pointer, kept: KeptSide) -> Self {
+    pub(super) fn begin(workspace: &Workspace, pointer: Pointer, kept: KeptSide) -> Self {
+        let holds_part = !held_parts(workspace).is_empty();
+        let only = workspace.selected().filter(|_| holds_part);
         Self {
             from_px: pointer.position_px,
             to_px: pointer.position_px,
             kept,
+            only: only.map(|handle| handle.name.clone()),
         }
     }
 
@@ -57,7 +62,9 @@ impl Gesture for CutLine {
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some(format!("{}: release to cut, Esc to cancel", effect(self.kept)))
+        let only = self.only.as_ref().map(|name| format!("Only {name} is cut. "));
+        let only = only.unwrap_or_default();
+        Some(format!("{only}{}: release to cut, Esc to cancel", effect(self.kept)))
     }
 
     /// The line, and marks on the side that is deleted.
@@ -90,7 +97,14 @@ impl Gesture for CutLine {
             return Next::End;
         }
         context.settings.wants_cut = None;
-        let change = MeshChange::Cut(self.plane(context.view), self.kept);
+        let spared = spared_by_cuts(context.workspace);
+        if spared.len() == context.workspace.document.paint().len() {
+            context
+                .workspace
+                .refuse("Every part is hidden or locked: show or unlock the one to cut.");
+            return Next::End;
+        }
+        let change = MeshChange::Cut(self.plane(context.view), self.kept, spared);
         stitch(context.workspace, change);
         Next::End
     }

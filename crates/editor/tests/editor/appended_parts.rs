@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_editor::{Command, Event, MergeSettings, MeshChange, Paint, Placement, REACH_RANGE};
-use pliant_mesh::SurfaceVertex;
+use glam::{DAffine3, DVec2, DVec3};
+use pliant_editor::{
+    Command, Event, KeptSide, MergeSettings, MeshChange, ObjectAction, Paint, Placement, REACH_RANGE, RimUse,
+};
+use pliant_mesh::{Object, SurfaceVertex, shapes};
 
 use crate::rig::new_mesh::{answer, bowl, state, used};
 use crate::rig::{Rig, VIEWPORT_PX};
@@ -142,6 +144,62 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
         rig.release(at);
     }
     assert!(rig.editor.take_stitch().is_none());
-    let problem = rig.editor.view().problem.unwrap_or_default().to_owned();
-    assert!(problem.contains("on one side"), "{problem}");
+    let wanted = rig.editor.view().wants_rim;
+    let still = matches!(wanted, Some(RimUse::Merge { first: Some(_) }));
+    assert!(still, "only a border on the other side is the second: {wanted:?}");
+}
+
+/// The vertices that a cut along a line across the whole view spares, and the sentence that comes with the line.
+fn spared(rig: &mut Rig) -> (Vec<SurfaceVertex>, String) {
+    rig.command(Command::FrameAll);
+    rig.drain();
+    rig.command(Command::CutAlongLine(KeptSide::Positive));
+    rig.press(DVec2::new(5.0, 290.0));
+    rig.move_to(DVec2::new(790.0, 310.0));
+    let said = rig.editor.view().status.clone();
+    rig.release(DVec2::new(790.0, 310.0));
+    let request = rig.editor.take_stitch().unwrap();
+    rig.send(Event::Stitched(Err("not now".to_owned())));
+    match request.change {
+        MeshChange::Cut(_, _, spared) => (spared, said),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_line_cuts_the_part_of_the_selected_handle_alone_and_no_hidden_or_locked_one() {
+    let mut rig = appended();
+    let count = used(bowl()).positions.len() as u32;
+    let [first, second] = [0..count, count..2 * count].map(|of| of.map(SurfaceVertex).collect::<Vec<_>>());
+    let (whole, said) = spared(&mut rig);
+    assert!(whole == first && said.contains("Only lid is cut"), "{said}");
+    rig.command(Command::Deselect);
+    assert!(spared(&mut rig).0.is_empty(), "without a selected part, all are cut");
+
+    let triangles = bowl().triangles.len() as u32;
+    let object = |triangles| Object {
+        triangles: vec![triangles],
+        ..Object::default()
+    };
+    let objects = vec![object(0..triangles), object(triangles..2 * triangles)];
+    let two = || {
+        shapes::together(&[
+            used(bowl()),
+            shapes::moved(&used(bowl()), DAffine3::from_translation(DVec3::X * 2.2)),
+        ])
+    };
+    for action in [ObjectAction::Hide, ObjectAction::Lock] {
+        let mut rig = Rig::open_with_objects(two(), objects.clone());
+        rig.command(Command::Objects(action, vec![1]));
+        rig.drain();
+        assert!(spared(&mut rig).0 == second, "{action:?}");
+        rig.command(Command::Objects(action, vec![0]));
+        rig.drain();
+        rig.command(Command::CutAlongLine(KeptSide::Positive));
+        rig.press(DVec2::new(5.0, 290.0));
+        rig.release(DVec2::new(790.0, 310.0));
+        assert!(rig.editor.take_stitch().is_none());
+        let problem = rig.editor.view().problem.unwrap_or_default().to_owned();
+        assert!(problem.contains("hidden or locked"), "{action:?}: {problem}");
+    }
 }

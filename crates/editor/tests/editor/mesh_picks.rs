@@ -97,10 +97,10 @@ fn a_line_cuts_by_the_plane_through_it_and_the_eye_and_keeps_the_side_that_is_as
                 rig.move_to(to);
                 rig.release(to);
                 let request = rig.editor.take_stitch().unwrap();
-                let MeshChange::Cut(plane, side) = request.change else {
+                let MeshChange::Cut(plane, side, spared) = request.change else {
                     panic!("{:?}", request.change)
                 };
-                assert_eq!(side, kept);
+                assert_eq!((side, spared), (kept, Vec::new()));
                 assert!(rig.editor.view().wants_cut.is_none(), "one drag, one cut");
                 let camera = *rig.editor.view().camera;
                 for point in &rig.model.surface.positions {

@@ -12,6 +12,7 @@ use super::Document;
 use crate::document::access::Access;
 use crate::document::carried_examples::carry_examples;
 use crate::document::content::{Content, Paint};
+use crate::document::continuation::Continuation;
 use crate::document::fluid::Fluid;
 use crate::document::handle::{HandleId, PivotPlace};
 use crate::document::kept_shape::KeptShape;
@@ -19,8 +20,8 @@ use crate::document::matching::Matching;
 
 impl Document {
     /// The same regions and handles on the vertices of a new mesh that match its own, which has the present shape at
-    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. With it
-    /// come sentences about what was lost.
+    /// rest, with the parts that are turned inside out turned there. They continue into new triangles. Handles rest at
+    /// their visible positions. With it come sentences about what was lost.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -47,6 +48,7 @@ impl Document {
         content.settled = true;
         content.strength = None;
         content.inside_out = Arc::default();
+        continue_into_new(&mut content, matching, model);
         let mut attachments = (*applied.content.attachments).clone();
         lost.extend(carry_examples(&mut attachments, matching, model, budget, cancel)?);
         content.attachments = Arc::new(attachments);
@@ -99,8 +101,7 @@ impl Document {
         Some(id)
     }
 
-    /// Puts the pivots that belong in the middle of their handles there, after a change that has moved vertices. The
-    /// handles rest.
+    /// Puts the pivots that belong in the middle of their handles there, after a change of vertices. The handles rest.
     pub(crate) fn centre_pivots(&mut self, model: &Model) {
         let mut sums: BTreeMap<HandleId, (DVec3, f64)> = BTreeMap::new();
         for (paint, position) in self.content.paint.iter().zip(&model.surface.positions) {
@@ -225,6 +226,18 @@ impl Document {
             isolated,
             small: self.access.small,
         }
+    }
+}
+
+/// Continues paint, stiffness, continuity and dye into the new triangles of former parts.
+fn continue_into_new(content: &mut Content, matching: &Matching, model: &Model) {
+    let continuation = Continuation::of(matching, model);
+    continuation.paint(Arc::make_mut(&mut content.paint).as_mut_slice());
+    for field in [&mut content.stiffness, &mut content.continuity].into_iter().flatten() {
+        continuation.numbers(Arc::make_mut(field).as_mut_slice());
+    }
+    for dye in [&mut content.fluid.dye, &mut content.fluid.kept].into_iter().flatten() {
+        continuation.dye(Arc::make_mut(dye).as_mut_slice());
     }
 }
 
