@@ -22,6 +22,8 @@ pub(crate) struct CutLine {
     to_px: DVec2,
     /// The positive side is to the left of the line, seen along it.
     kept: KeptSide,
+    /// True while Shift is held: the other side is kept.
+    is_turned: bool,
     /// The name of the handle whose part alone is cut.
     only: Option<String>,
 }
@@ -34,8 +36,22 @@ impl CutLine {
             from_px: pointer.position_px,
             to_px: pointer.position_px,
             kept,
+            is_turned: pointer.modifiers.shift,
             only: only.map(|handle| handle.name.clone()),
         }
+    }
+
+    fn kept(&self) -> KeptSide {
+        match (self.kept, self.is_turned) {
+            (KeptSide::Positive, true) => KeptSide::Negative,
+            (KeptSide::Negative, true) => KeptSide::Positive,
+            (kept, _) => kept,
+        }
+    }
+
+    fn follow(&mut self, pointer: Pointer) {
+        self.to_px = pointer.position_px;
+        self.is_turned = pointer.modifiers.shift;
     }
 
     /// The plane through the line and the eye; its normal points to the left of the line.
@@ -64,7 +80,12 @@ impl Gesture for CutLine {
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         let only = self.only.as_ref().map(|name| format!("Only {name} is cut. "));
         let only = only.unwrap_or_default();
-        Some(format!("{only}{}: release to cut, Esc to cancel", effect(self.kept)))
+        let turn = match self.kept {
+            KeptSide::Both => "",
+            KeptSide::Positive | KeptSide::Negative => ", Shift for the other side",
+        };
+        let effect = effect(self.kept());
+        Some(format!("{only}{effect}: release to cut{turn}, Esc to cancel"))
     }
 
     /// The line, and marks on the side that is deleted.
@@ -72,7 +93,7 @@ impl Gesture for CutLine {
         let along = self.to_px - self.from_px;
         let left = DVec2::new(along.y, -along.x).normalize_or_zero();
         let mark = MARK_PX
-            * match self.kept {
+            * match self.kept() {
                 KeptSide::Positive => -left,
                 KeptSide::Negative => left,
                 KeptSide::Both => DVec2::ZERO,
@@ -84,7 +105,7 @@ impl Gesture for CutLine {
     }
 
     fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.to_px = pointer.position_px;
+        self.follow(pointer);
         Next::Stay
     }
 
@@ -92,7 +113,7 @@ impl Gesture for CutLine {
         if button != Button::Primary {
             return Next::Stay;
         }
-        self.to_px = pointer.position_px;
+        self.follow(pointer);
         if self.from_px.distance(self.to_px) < SHORTEST_PX {
             return Next::End;
         }
@@ -104,7 +125,7 @@ impl Gesture for CutLine {
                 .refuse("Every part is hidden or locked: show or unlock the one to cut.");
             return Next::End;
         }
-        let change = MeshChange::Cut(self.plane(context.view), self.kept, spared);
+        let change = MeshChange::Cut(self.plane(context.view), self.kept(), spared);
         stitch(context.workspace, change);
         Next::End
     }

@@ -8,8 +8,8 @@ use pliant_editor::{
 };
 use pliant_mesh::{Object, SurfaceVertex, shapes};
 
-use crate::rig::new_mesh::{answer, bowl, state, used};
-use crate::rig::{Rig, VIEWPORT_PX};
+use crate::rig::new_mesh::{answer, answer_with, bowl, state, used};
+use crate::rig::{Rig, VIEWPORT_PX, weld};
 
 /// A bowl with another one appended, whose handle is selected.
 fn appended() -> Rig {
@@ -147,6 +147,26 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
     let wanted = rig.editor.view().wants_rim;
     let still = matches!(wanted, Some(RimUse::Merge { first: Some(_) }));
     assert!(still, "only a border on the other side is the second: {wanted:?}");
+}
+
+#[test]
+fn a_closed_part_that_faces_inwards_is_turned_when_it_is_appended() {
+    for faces_inwards in [false, true] {
+        let mut rig = Rig::open(bowl());
+        rig.command(Command::ChangeMesh(MeshChange::Append("ball".to_owned())));
+        let mut ball = shapes::moved(&shapes::icosphere(2), DAffine3::from_translation(DVec3::X * 3.0));
+        if faces_inwards {
+            ball.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        let whole = shapes::together(&[bowl(), ball]);
+        answer_with(&mut rig, |_| (*weld(whole)).clone());
+        let document = rig.editor.document();
+        let is_held = |paint: &Paint| *paint == Paint::Handle(document.handles()[0].id);
+        let held = document.paint().iter().position(is_held).unwrap() as u32;
+        let part = rig.model.topology.component(SurfaceVertex(held));
+        let turned: Vec<u32> = document.inside_out().iter().copied().collect();
+        assert_eq!(turned, if faces_inwards { vec![part] } else { vec![] });
+    }
 }
 
 /// The vertices that a cut along a line across the whole view spares, and the sentence that comes with the line.

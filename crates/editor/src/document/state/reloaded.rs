@@ -77,7 +77,8 @@ impl Document {
         former
     }
 
-    /// Makes a handle of the vertices of a new mesh that match none of the former one. What was there before and is not
+    /// Makes a handle of the vertices of a new mesh that match none of the former one. Closed parts of it that face
+    /// inwards are turned inside out, because a cut or a merge could no longer tell. What was there before and is not
     /// painted rests, whatever the handle touches.
     pub(crate) fn hold_new_part(&mut self, name: &str, matching: &Matching, model: &Model) -> Option<HandleId> {
         let new = (0..).zip(&matching.of_new).filter(|(_, old)| old.is_none());
@@ -98,6 +99,10 @@ impl Document {
             parts.entry(part).or_insert(Loose::Rest);
         });
         self.set_loose(self.loose(), parts);
+        let is_new = |part: &&u32| matching.of_new_part[**part as usize].is_none();
+        let mut turned = (*self.content.inside_out).clone();
+        turned.extend(model.inside_out.iter().filter(is_new));
+        self.set_inside_out(Arc::new(turned));
         Some(id)
     }
 
