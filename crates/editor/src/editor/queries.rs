@@ -254,6 +254,10 @@ impl Editor {
             document: self.lasting_document()?,
             model: Arc::clone(self.workspace.model()?),
             camera: *self.view.camera(),
+            work_pose: self
+                .document()
+                .work_pose()
+                .map(|_| self.document().present_pose("work pose".to_owned())),
         })
     }
 
