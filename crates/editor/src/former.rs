@@ -44,6 +44,7 @@ impl Former {
             document,
             model,
             camera: snapshot.camera,
+            work_pose: None,
         })
     }
 }

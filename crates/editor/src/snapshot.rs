@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_mesh::Model;
 
-use crate::document::{Document, Dye, Matching};
+use crate::document::{Document, Dye, Matching, Pose};
 use crate::view::Camera;
 use crate::{Beginning, MeshReference, Project, geometry_hash};
 
@@ -15,12 +15,15 @@ pub struct Snapshot {
     pub(crate) document: Document,
     pub(crate) model: Arc<Model>,
     pub(crate) camera: Camera,
+    /// The shown state, if the document is that outside a work pose.
+    pub(crate) work_pose: Option<Pose>,
 }
 
 impl Snapshot {
     /// The project of this state. This takes some tens of milliseconds on a large mesh.
     pub fn project(&self, mesh: MeshReference) -> Project {
-        Project::of(&self.document, &self.model, Some(&self.camera), mesh)
+        let project = Project::of(&self.document, &self.model, Some(&self.camera), mesh);
+        project.in_work_pose(self.work_pose.as_ref())
     }
 
     /// The same without the kept dye that a file has already, whose colours were saved with `saved`: an entry per surface
@@ -49,6 +52,7 @@ impl Snapshot {
             geometry: geometry_hash(model),
         };
         let project = Project::of(&document, model, Some(&self.camera), mesh);
+        let project = project.in_work_pose(self.work_pose.as_ref());
         (project.into(), matching.unmatched())
     }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_deform::Role;
+use pliant_deform::{Method, MethodDeclaration, Role};
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
@@ -254,7 +254,21 @@ impl Editor {
             document: self.lasting_document()?,
             model: Arc::clone(self.workspace.model()?),
             camera: *self.view.camera(),
+            work_pose: self
+                .document()
+                .work_pose()
+                .map(|_| self.document().present_pose("work pose".to_owned())),
         })
+    }
+
+    /// The options with which a person begins to use a method: without handles, those for control points moved by hand.
+    pub fn first_choice(&self, declaration: &MethodDeclaration) -> Method {
+        let method = (declaration.first_choice)();
+        if self.document().handles().is_empty() {
+            method.by_hand()
+        } else {
+            method
+        }
     }
 
     /// The document outside its work pose, which files get.

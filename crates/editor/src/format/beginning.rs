@@ -109,7 +109,7 @@ impl Beginning {
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
             Self::Edit(edit) => super::exchange::import(edit, model),
-            Self::Project(project) => project.document(model),
+            Self::Project(project) => project.shown_document(model),
         }
     }
 

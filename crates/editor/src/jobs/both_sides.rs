@@ -38,7 +38,7 @@ impl BothSides {
             None => symmetry_plane(surface, topology, &bvh, progress, cancel)?,
         };
         let Some(plane) = plane else { return Ok(None) };
-        let counterparts = Counterparts::find(&surface.positions, topology, &bvh, plane, progress, cancel)?;
+        let counterparts = Counterparts::find(surface, topology, &bvh, plane, progress, cancel)?;
         Ok(Some(Self { plane, counterparts }))
     }
 

@@ -12,7 +12,7 @@ use pliant_editor::{
 };
 use pliant_mesh::{Drawn, shapes};
 
-fn saved(rig: &Rig) -> String {
+pub fn saved(rig: &Rig) -> String {
     let mesh = MeshReference {
         name: None,
         path: Some("scan.glb".to_owned()),
@@ -21,7 +21,7 @@ fn saved(rig: &Rig) -> String {
     rig.editor.snapshot().unwrap().project(mesh).to_json()
 }
 
-fn reopened(rig: &Rig, text: &str) -> Rig {
+pub fn reopened(rig: &Rig, text: &str) -> Rig {
     let jobs = InlineExecutor::new();
     let mut editor = Editor::new(Box::new(jobs.clone()));
     editor.handle(Event::Viewport { size_px: VIEWPORT_PX });

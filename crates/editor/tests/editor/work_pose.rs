@@ -1,6 +1,7 @@
 //! Laws of the work pose: everything returns to the bit, paint stays, and corrections turn back with the surface.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
 
+use crate::project::{reopened, saved};
 use crate::rig::{CENTRE_PX, Rig};
 use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::METHODS;
@@ -206,5 +207,41 @@ fn files_get_the_shape_without_the_work_pose_and_nothing_changes_the_way_back() 
     ] {
         let why = rig.editor.unavailable_because(&command);
         assert!(why.is_some_and(|why| why.contains("work pose")), "{command:?}");
+    }
+}
+
+#[test]
+fn a_project_opens_in_its_work_pose_and_still_returns_to_the_bit() {
+    for method in ["bilaplacian", "arap"] {
+        let mut rig = bent(method);
+        let seen = rig.drawn();
+        let (outside, before) = (saved(&rig), rig.editor.document().clone());
+        rig.command(Command::WorkPose);
+        turn(&mut rig, 40.0);
+        let (posed, text) = (rig.drawn(), saved(&rig));
+        let mut again = reopened(&rig, &text);
+        assert!(again.editor.document().is_in_work_pose(), "{method}");
+        assert!(!again.editor.view().unsaved, "{method}");
+        let place = |bits: &[u64; 3]| DVec3::from_array(bits.map(f64::from_bits));
+        let apart = posed
+            .iter()
+            .zip(&again.drawn())
+            .map(|(a, b)| place(a).distance(place(b)))
+            .fold(0.0, f64::max);
+        // An iterative method may end a little elsewhere than after the drag.
+        let most = if method == "arap" { 1e-2 } else { 0.0 };
+        assert!(apart <= most, "{method}: {apart}");
+        again.command(Command::WorkPose);
+        again.drain();
+        assert!(again.drawn() == seen, "{method}: it returns");
+        assert_eq!(again.editor.document().handles(), before.handles(), "{method}");
+        // Commands bend the file outside the work pose.
+        let setup = |text: &str| {
+            pliant_editor::Beginning::parse(text)
+                .unwrap()
+                .resolve(&rig.model)
+                .unwrap()
+        };
+        assert!(setup(&text) == setup(&outside), "{method}");
     }
 }

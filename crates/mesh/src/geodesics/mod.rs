@@ -58,6 +58,20 @@ impl DistanceSearch {
         seeds: &[(SurfaceVertex, f64)],
         limit: f64,
     ) -> &[(SurfaceVertex, f64)] {
+        self.within_stretched(triangles, topology, position, |_| 1.0, seeds, limit)
+    }
+
+    /// The same where a way counts as so many times longer as `stretch` says at the vertices along it, above 0. With
+    /// 1 everywhere the distances are those of [`Self::within`] to the bit.
+    pub fn within_stretched(
+        &mut self,
+        triangles: &[[SurfaceVertex; 3]],
+        topology: &Topology,
+        position: impl Fn(SurfaceVertex) -> DVec3,
+        stretch: impl Fn(SurfaceVertex) -> f64,
+        seeds: &[(SurfaceVertex, f64)],
+        limit: f64,
+    ) -> &[(SurfaceVertex, f64)] {
         self.distance.resize(topology.vertex_count(), f64::INFINITY);
         self.is_settled.resize(topology.vertex_count(), false);
         self.reached.clear();
@@ -71,7 +85,7 @@ impl DistanceSearch {
             }
             self.is_settled[v.index()] = true;
             self.reached.push((v, distance));
-            self.march_from(v, triangles, topology, &position, limit);
+            self.march_from(v, triangles, topology, (&position, &stretch), limit);
         }
         for v in self.touched.drain(..) {
             self.distance[v.index()] = f64::INFINITY;
@@ -85,7 +99,7 @@ impl DistanceSearch {
         v: SurfaceVertex,
         triangles: &[[SurfaceVertex; 3]],
         topology: &Topology,
-        position: &impl Fn(SurfaceVertex) -> DVec3,
+        (position, stretch): (&impl Fn(SurfaceVertex) -> DVec3, &impl Fn(SurfaceVertex) -> f64),
         limit: f64,
     ) {
         let here = position(v);
@@ -94,7 +108,8 @@ impl DistanceSearch {
             if self.is_settled[u.index()] {
                 continue;
             }
-            self.offer(u, distance + here.distance(position(u)), limit);
+            let stretched = 0.5 * (stretch(v) + stretch(u));
+            self.offer(u, distance + here.distance(position(u)) * stretched, limit);
         }
         for t in topology.faces(v, triangles) {
             let [a, b, c] = triangles[t as usize];
@@ -111,8 +126,12 @@ impl DistanceSearch {
                 _ => continue,
             };
             let corners = [here, position(side), position(third)];
-            if let Some(through) = through_triangle(corners, [distance, self.distance[side.index()]]) {
-                self.offer(third, through, limit);
+            let stretched = (stretch(v) + stretch(side) + stretch(third)) / 3.0;
+            let ends = [distance / stretched, self.distance[side.index()] / stretched];
+            if let Some(through) = through_triangle(corners, ends) {
+                // Through a stretched triangle no vertex comes before those that lead to it, so results depend on no order.
+                let least = if stretched == 1.0 { 0.0 } else { distance };
+                self.offer(third, (through * stretched).max(least), limit);
             }
         }
     }
@@ -213,6 +232,30 @@ mod tests {
                 return distances;
             }
         }
+    }
+
+    #[test]
+    fn a_stretched_way_is_as_many_times_longer_and_a_search_that_stretches_nothing_is_the_same_to_the_bit() {
+        let model = shapes::model(shapes::icosphere(3));
+        let (surface, topology) = (&model.surface, &model.topology);
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let mut search = DistanceSearch::default();
+        let mut within = |stretch: &dyn Fn(SurfaceVertex) -> f64| {
+            let seeds = [(SurfaceVertex(0), 0.0)];
+            let found = search.within_stretched(&surface.triangles, topology, position, stretch, &seeds, 100.0);
+            found.to_vec()
+        };
+        let plain = within(&|_| 1.0);
+        let all = distances_along_surface(surface, topology, &[SurfaceVertex(0)], 100.0);
+        assert!(plain.iter().all(|&(v, distance)| all[v.index()] == distance));
+        for (tripled, plain) in within(&|_| 3.0).iter().zip(&plain) {
+            assert!((tripled.1 - 3.0 * plain.1).abs() < 1e-9);
+        }
+        // A belt around the equator that is four times as long.
+        let belt = within(&|v| if position(v).z.abs() < 0.3 { 4.0 } else { 1.0 });
+        let longer = belt.iter().filter(|&&(v, distance)| distance > 1.2 * all[v.index()]);
+        assert!(longer.clone().count() > 100);
+        assert!(belt.iter().all(|&(v, distance)| distance > all[v.index()] - 1e-9));
     }
 
     #[test]

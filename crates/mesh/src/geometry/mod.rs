@@ -4,6 +4,7 @@
 //! there are no positions.
 
 mod areas;
+mod concavity;
 mod curvature;
 mod damage;
 mod distortion;
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 
 pub(crate) use areas::signed_volume;
 pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas};
+pub use concavity::concavities;
 pub use curvature::mean_curvatures;
 pub use damage::{Damage, Damaged, point_in_words};
 pub use distortion::Distortion;

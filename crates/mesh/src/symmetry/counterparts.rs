@@ -1,13 +1,15 @@
 //! The pairs of vertices that are each other's mirror images.
 //!
 //! The mesh of a scan is never symmetric vertex by vertex. A vertex' image is somewhere on the other side's surface,
-//! and the vertex copies the vertex nearest to its image: in this direction, no vertex between images is left out.
+//! and the vertex copies the vertex nearest to its image: in this direction, no vertex between images is left out. Limbs
+//! that stand differently on both sides are paired along the surface ([`grown`]).
 
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::grown::grown;
 use super::plane::MirrorPlane;
-use crate::{Bvh, Cancel, Cancelled, Progress, SurfaceVertex, Topology};
+use crate::{Bvh, Cancel, Cancelled, Progress, Surface, SurfaceVertex, Topology};
 
 /// The number of vertices between two checks of the progress.
 const BATCH: usize = 16_384;
@@ -36,18 +38,19 @@ pub struct Counterparts {
 }
 
 impl Counterparts {
-    /// Finds every vertex' image; `bvh` is that of the same `positions`.
+    /// Finds every vertex' image; `bvh` is that of the same surface.
     ///
     /// # Errors
     /// If it was cancelled.
     pub fn find(
-        positions: &[DVec3],
+        surface: &Surface,
         topology: &Topology,
         bvh: &Bvh,
         plane: MirrorPlane,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
+        let positions = &surface.positions;
         let count = positions.len();
         let mut images: Vec<Option<SurfaceVertex>> = Vec::with_capacity(count);
         for start in (0..count).step_by(BATCH) {
@@ -56,6 +59,7 @@ impl Counterparts {
             images.par_extend(batch.map(|v| image_of(positions, topology, bvh, plane, SurfaceVertex(v as u32))));
             progress.set(start as f32 / count as f32);
         }
+        let images = grown(surface, topology, plane, images, cancel)?;
         let pairs = images.iter().enumerate().filter_map(|(vertex, image)| {
             let vertex = SurfaceVertex(vertex as u32);
             image.filter(|&image| image != vertex).map(|image| [vertex, image])

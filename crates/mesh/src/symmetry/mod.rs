@@ -1,6 +1,7 @@
 //! Mirror symmetry: a plane, the shape's own plane, and the vertices that are each other's images across it.
 
 mod counterparts;
+mod grown;
 mod of_points;
 mod plane;
 mod search;

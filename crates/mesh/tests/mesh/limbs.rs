@@ -114,6 +114,31 @@ fn the_tip_of_an_ear_leads_to_its_root() {
 }
 
 #[test]
+fn a_tail_like_half_a_ball_leads_to_the_crease_around_it() {
+    // A ball of radius 0.3 half out of a ball of radius 1: no ring on it is narrower than those beside it.
+    let ball = |z: f64, radius: f64| (radius * radius - z * z).max(0.0).sqrt();
+    let model = shapes::model(turned(1.27, -1.0, |z| ball(z, 1.0).max(ball(z - 0.97, 0.3))));
+    for z in [1.24, 1.2, 1.12] {
+        for side in [0, 11, 37] {
+            let joint = joint_at(&model, triangle_at(&model, z, side));
+            let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
+            // The crease is at 0.95; half a radius beside it is still on the tail.
+            assert!(
+                (0.8..1.12).contains(&joint.centre.z),
+                "from {z}, side {side}: {}",
+                joint.centre
+            );
+            assert!(
+                (joint.radius - 0.3).abs() < 0.05,
+                "from {z}, side {side}: {}",
+                joint.radius
+            );
+            assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
+        }
+    }
+}
+
+#[test]
 fn other_parts_do_not_hide_a_limb() {
     let profile = |share: f64| {
         let z = 3.0 * (PI * share).cos();

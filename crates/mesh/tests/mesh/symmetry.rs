@@ -3,9 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_mesh::{
-    Bvh, Cancel, Counterparts, Drawn, MirrorPlane, Model, Progress, SurfaceVertex, mirror_planes, shapes,
+    Bvh, Cancel, Counterparts, Drawn, DrawnVertex, MirrorPlane, Model, Progress, SurfaceVertex, mirror_planes, shapes,
     symmetry_plane,
 };
 
@@ -19,7 +22,7 @@ fn counterparts(model: &Model, plane: MirrorPlane) -> Counterparts {
     let surface = &model.surface;
     let bvh = Bvh::build(&surface.positions, &surface.triangles);
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    Counterparts::find(&surface.positions, &model.topology, &bvh, plane, &progress, &cancel).unwrap()
+    Counterparts::find(surface, &model.topology, &bvh, plane, &progress, &cancel).unwrap()
 }
 
 /// A body with x = 0 as its only plane of symmetry: longer than high, with a hump in front and a belly below.
@@ -134,6 +137,84 @@ fn counterparts_go_both_ways_and_leave_no_vertex_of_a_symmetric_shape_out() {
                 assert!(apart < 2.0 * edge, "{apart} {edge}");
             }
         }
+    }
+}
+
+#[test]
+fn a_limb_that_is_bent_on_one_side_has_its_counterparts_along_the_surface() {
+    // Arms along z on both sides of a trunk that is oval, so that each vertex' true counterpart is known.
+    let (rings, segments) = (96, 36);
+    let radius = |z: f64| {
+        if z.abs() < 1.2 {
+            1.0 - 0.4 * z * z
+        } else {
+            0.424 * (1.0 - ((z.abs() - 1.2) / 1.8).powi(2)).max(0.0).sqrt()
+        }
+    };
+    let profile = |share: f64| {
+        let z = 3.0 * (PI * share).cos();
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { radius(z) }, z)
+    };
+    let mut drawn = shapes::turned(rings, segments, profile);
+    for p in &mut drawn.positions {
+        p.y *= 1.3;
+        let beyond = (p.z - 1.5).clamp(0.0, 1.0);
+        let hinge = DVec3::Z * 1.5;
+        *p = hinge + DQuat::from_rotation_y(0.7 * beyond) * (*p - hinge);
+    }
+    let ring = |vertex: usize| {
+        if vertex == 0 {
+            (0, 0)
+        } else {
+            (1 + (vertex - 1) / segments, (vertex - 1) % segments)
+        }
+    };
+    let at = |(ring, segment): (usize, usize)| match ring {
+        // The poles are one vertex each.
+        0 => 0,
+        _ if ring == rings => (rings - 1) * segments + 1,
+        _ => 1 + (ring - 1) * segments + segment,
+    };
+    let model = shapes::model(drawn);
+    let all = counterparts(&model, MirrorPlane::across(2, 0.0));
+    let positions = &model.surface.positions;
+    let surface = |drawn: usize| model.drawn.surface_vertex(DrawnVertex(drawn as u32)).unwrap();
+    for drawn in 0..positions.len() {
+        let is_alone = all.of(surface(drawn)).is_empty();
+        assert!(
+            !is_alone || ring(drawn).0 == rings / 2,
+            "{drawn} at {}",
+            positions[surface(drawn).index()]
+        );
+    }
+    // Each part of the bent arm, from its tip on, has nearly all of its true counterpart, in one piece.
+    for beyond in [24, 32, 40] {
+        let part = (0..positions.len()).filter(|&drawn| ring(drawn).0 <= beyond);
+        let truth = |drawn: usize| {
+            let (ring, segment) = ring(drawn);
+            surface(at((rings - ring, segment)))
+        };
+        let (mut found, mut expected) = (BTreeSet::new(), BTreeSet::new());
+        for drawn in part {
+            found.extend(all.of(surface(drawn)));
+            expected.insert(truth(drawn));
+        }
+        let (common, either) = (found.intersection(&expected).count(), found.union(&expected).count());
+        assert!(
+            common as f64 >= 0.8 * either as f64,
+            "{beyond} rings: {common} of {either}"
+        );
+        let mut front: Vec<SurfaceVertex> = found.pop_first().into_iter().collect();
+        while let Some(vertex) = front.pop() {
+            front.extend(
+                model
+                    .topology
+                    .neighbours(vertex)
+                    .iter()
+                    .filter(|other| found.remove(other)),
+            );
+        }
+        assert!(found.is_empty(), "{beyond} rings: {} vertices are apart", found.len());
     }
 }
 

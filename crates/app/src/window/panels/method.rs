@@ -24,7 +24,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         let (list, chosen) = choose_method(ui, "method", method, width);
         list.labelled_by(label.id);
         if let Some(chosen) = chosen {
-            commands.push(Command::SetMethod(chosen));
+            commands.push(Command::SetMethod(editor.first_choice(chosen.declaration())));
         }
         if icon_choice(ui, editor, &Command::CompareMethods, compared, Glyph::LayoutGrid, None) {
             commands.push(Command::CompareMethods);
@@ -38,16 +38,17 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 pub fn show_options(ui: &mut egui::Ui, editor: &Editor, morph_targets: &[String], commands: &mut Outbox) {
     examples::show(ui, editor, morph_targets, commands);
     control_points(ui, editor, commands);
-    options(ui, editor.document().method(), commands);
+    options(ui, editor, commands);
 }
 
 /// The room for the button that compares methods, in points.
 const COMPARE: f32 = 44.0;
 
 /// The method's options, folded, and separately those for experts.
-fn options(ui: &mut egui::Ui, method: &Method, commands: &mut Outbox) {
+fn options(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let method = editor.document().method();
     let declared = method.declaration();
-    let first_choice = (declared.first_choice)();
+    let first_choice = editor.first_choice(declared);
     for (title, is_advanced) in [("Options", false), ("Advanced", true)] {
         let mut own = declared
             .options

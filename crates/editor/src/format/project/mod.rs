@@ -39,7 +39,7 @@ use super::method::{method_to_value, read_method};
 use super::reader::read;
 use super::setup::Setup;
 use super::strength::strength_kind;
-use crate::document::{Content, Document, Handle, HandleId, Paint, Tips, bits_equal, is_within};
+use crate::document::{Content, Document, Handle, HandleId, Paint, Pose, Tips, bits_equal, is_within};
 pub use crate::format::kept::StoredKept;
 use crate::format::stored_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{FileContacts, Region, region_input};
@@ -114,6 +114,9 @@ pub struct Project {
     /// The kept poses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     poses: Vec<StoredPose>,
+    /// The work pose that was shown, from which a person returns to the rest of this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    work_pose: Option<StoredPose>,
     /// The edit over time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     animation: Option<StoredAnimation>,
@@ -275,6 +278,7 @@ impl Project {
             weld: model.weld.distance,
             strength: document.strength.as_ref().map(|strength| strength.share),
             poses: document.poses.iter().map(StoredPose::of).collect(),
+            work_pose: None,
             animation: StoredAnimation::of(document.animation()),
             flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
             mesh_colours: None,
@@ -303,6 +307,28 @@ impl Project {
         }
     }
 
+    /// The same, shown in a work pose.
+    #[must_use]
+    pub(crate) fn in_work_pose(self, pose: Option<&Pose>) -> Self {
+        Self {
+            work_pose: pose.map(StoredPose::of),
+            ..self
+        }
+    }
+
+    /// The document as it was shown: in its work pose, if it was in one.
+    ///
+    /// # Errors
+    /// Those of [`Self::document`].
+    pub(crate) fn shown_document(&self, model: &Model) -> Result<Document, EditError> {
+        let mut document = self.document(model)?;
+        if let Some(pose) = &self.work_pose {
+            document.enter_work_pose();
+            document.take_pose(&pose.pose(), |_| true);
+        }
+        Ok(document)
+    }
+
     /// That digest, if it is known.
     pub fn mesh_colours(&self) -> Option<&str> {
         self.mesh_colours.as_deref()
@@ -317,10 +343,11 @@ impl Project {
         Ok(fluid.and_then(|fluid| fluid.kept))
     }
 
-    /// A digest of the document in it, independent of the mesh's path and the camera.
+    /// A digest of the document in it, independent of the mesh's path, the camera and a work pose.
     pub fn document_hash(&self) -> String {
         let document = Self {
             camera: None,
+            work_pose: None,
             mesh_colours: None,
             mesh: MeshReference {
                 path: None,

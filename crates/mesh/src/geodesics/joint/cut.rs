@@ -8,8 +8,9 @@ use super::level_set::{self, Segments};
 use super::limb::{JOINT_RINGS, Joint};
 use super::rings::{Body, Field, Rings, Source};
 use super::shape::Shape;
-use crate::SurfaceVertex;
+use super::ways::Ways;
 use crate::geodesics::DistanceSearch;
+use crate::{SurfaceVertex, face_area};
 
 /// The distance, in radii, between a ring and the plane from which a straighter ring is searched.
 const SECTION_RADII: f64 = 2.0;
@@ -23,6 +24,9 @@ const STRAIGHT: f64 = 1.1;
 /// A joint's falloff is at most this share of the distance to the limb's tip, so that most of a head keeps its shape.
 const FALLOFF_SHARE: f64 = 0.25;
 
+/// A joint's falloff has at most this share of the limb's area: a head with long ears has its tip far away, and is squat.
+const FALLOFF_AREA: f64 = 0.3;
+
 /// A ring, and the vertices that it cuts off.
 pub(super) struct Cut {
     /// The middle of the ring.
@@ -31,6 +35,8 @@ pub(super) struct Cut {
     pub(super) radius: f64,
     /// The vertices that it cuts off, ascending.
     pub(super) limb: Vec<SurfaceVertex>,
+    /// Their share of the component's area.
+    pub(super) share: f64,
     ring: Segments,
     /// The corners of the triangles that the ring goes through, with their distances from it.
     beside: Vec<(SurfaceVertex, f64)>,
@@ -46,6 +52,7 @@ impl Cut {
             centre: weighted / length,
             radius: length / TAU,
             limb: rings.limb(level),
+            share: rings.limb_share(level),
             ring,
             beside,
         }
@@ -58,6 +65,7 @@ impl Cut {
         &self,
         search: &mut DistanceSearch,
         shape: &Shape<'_>,
+        ways: &Ways,
         corners: &[SurfaceVertex; 3],
         nudge: f64,
     ) -> Option<Self> {
@@ -81,7 +89,7 @@ impl Cut {
         if seeds.is_empty() {
             return None;
         }
-        let field = Field::measure(search, shape, &seeds, height + nudge * self.radius);
+        let field = Field::measure(search, shape, ways, &seeds, height + nudge * self.radius);
         let rings = Rings::of(shape, &field, Body::With(self.far_from_limb(shape, &is_limb)?));
         let nearest = field.level_at(height - NUDGE_RADII * self.radius);
         let level = rings.narrowest(corners, nearest, Source::Section)?.level;
@@ -104,20 +112,42 @@ impl Cut {
         farthest.copied().unwrap_or(self.beside[0].0)
     }
 
+    /// The distance from the ring within which [`FALLOFF_AREA`] of the limb is, by distances that are negative on the limb;
+    /// infinite if that is beyond them.
+    fn squat(&self, shape: &Shape<'_>, signed: &[f64]) -> f64 {
+        let area = |v: SurfaceVertex| {
+            let faces = shape.topology.faces(v, shape.triangles);
+            faces
+                .map(|face| face_area(shape.corners(shape.triangles[face as usize])))
+                .sum::<f64>()
+        };
+        let whole: f64 = self.limb.iter().map(|&v| area(v)).sum();
+        let near = self.limb.iter().filter(|v| signed[v.index()].is_finite());
+        let mut near: Vec<(f64, f64)> = near.map(|&v| (-signed[v.index()], area(v))).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut within = 0.0;
+        let mut beyond = near.iter().skip_while(|(_, area)| {
+            within += area;
+            within <= FALLOFF_AREA * whole
+        });
+        beyond.next().map_or(f64::INFINITY, |(distance, _)| *distance)
+    }
+
     /// The joint with its falloff; `None` if the limb has no vertex beyond it.
     pub(super) fn joint(self, search: &mut DistanceSearch, shape: &Shape<'_>) -> Option<Joint> {
         let tip = shape.positions[self.tip(shape).index()];
-        let falloff = self.radius.min(FALLOFF_SHARE * tip.distance(self.centre));
+        let most = self.radius.min(FALLOFF_SHARE * tip.distance(self.centre));
         let mut is_limb = vec![false; shape.positions.len()];
         self.limb.iter().for_each(|v| is_limb[v.index()] = true);
         // Some triangles beyond the falloff, so that the outermost rings are closed.
         let step = self.beside.iter().map(|(_, distance)| *distance).fold(0.0, f64::max);
-        let limit = falloff + 4.0 * step;
+        let limit = most + 4.0 * step;
         let position = |v: SurfaceVertex| shape.positions[v.index()];
         let mut signed = vec![f64::NAN; shape.positions.len()];
         for &(v, distance) in search.within(shape.triangles, shape.topology, position, &self.beside, limit) {
             signed[v.index()] = if is_limb[v.index()] { -distance } else { distance };
         }
+        let falloff = most.min(self.squat(shape, &signed).max(step));
         let (mut sum, mut count) = (DVec3::ZERO, 0.0);
         for v in self.limb.iter().filter(|v| signed[v.index()].is_finite()) {
             sum += position(*v) - self.centre;

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::candidates::{self, SMALLEST_SHARE};
 use super::cut::{Cut, NUDGE_RADII};
-use super::limb::Joint;
 use super::origin::{FarTips, Origin};
 use super::rings::{Body, End, Field, Narrowest, Rings, Source};
 use super::shape::Shape;
+use super::ways::{Ways, extent};
 use crate::geodesics::DistanceSearch;
 use crate::{Cancel, Cancelled, SurfaceVertex};
 
@@ -28,6 +28,7 @@ const BESIDE_RADII: f64 = 1.5;
 pub(super) struct Hunt<'a> {
     shape: &'a Shape<'a>,
     cancel: &'a Cancel,
+    ways: Ways,
     search: DistanceSearch,
     point: DVec3,
     corners: [SurfaceVertex; 3],
@@ -46,11 +47,12 @@ struct Surroundings {
 }
 
 impl<'a> Hunt<'a> {
-    pub(super) fn new(shape: &'a Shape<'a>, triangle: u32, point: DVec3, cancel: &'a Cancel) -> Self {
+    pub(super) fn new(shape: &'a Shape<'a>, ways: Ways, triangle: u32, point: DVec3, cancel: &'a Cancel) -> Self {
         let corners = shape.triangles[triangle as usize];
         Self {
             shape,
             cancel,
+            ways,
             search: DistanceSearch::default(),
             point,
             corners,
@@ -59,11 +61,12 @@ impl<'a> Hunt<'a> {
         }
     }
 
-    /// The joint that is `up` candidates farther from the limb's tip than the guess.
+    /// The ring of the joint that is `up` candidates farther from the limb's tip than the guess, and the number of
+    /// candidates before it.
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn joint(mut self, up: i32) -> Result<Option<Joint>, Cancelled> {
+    pub(super) fn cut(&mut self, up: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
         let (mut origins, far) = self.likely_origins()?;
         let mut found = self.first_candidate(&origins, up)?;
         if found.is_none() {
@@ -86,14 +89,14 @@ impl<'a> Hunt<'a> {
             }
         }
         self.cancel.check()?;
-        let Some((cut, up)) = found else { return Ok(None) };
-        let joint = cut.joint(&mut self.search, self.shape);
-        Ok(joint.map(|joint| Joint { up, ..joint }))
+        Ok(found)
     }
 
     /// The origins that the rings around the point suggest, and the far tips if they were needed for that.
     fn likely_origins(&mut self) -> Result<(Vec<Origin>, Option<FarTips>), Cancelled> {
-        let near = FIRST_SHARE * self.extent();
+        let topology = self.shape.topology;
+        let component: Vec<SurfaceVertex> = topology.vertices_of(topology.component(self.corners[0])).collect();
+        let near = FIRST_SHARE * extent(self.shape, &component);
         let Surroundings { askew, is_tip } = self.surroundings(near)?;
         let mut origins = Vec::new();
         if is_tip {
@@ -131,20 +134,9 @@ impl<'a> Hunt<'a> {
         FarTips::of(&mut self.search, self.shape, &self.seeds, self.cancel)
     }
 
-    /// The diagonal of the box around the component.
-    fn extent(&self) -> f64 {
-        let topology = self.shape.topology;
-        let vertices = topology.vertices_of(topology.component(self.corners[0]));
-        let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for position in vertices.map(|v| self.shape.positions[v.index()]) {
-            (least, most) = (least.min(position), most.max(position));
-        }
-        least.distance(most)
-    }
-
     /// The rings around `seeds` up to the distance `limit`.
     fn rings(&mut self, seeds: &[(SurfaceVertex, f64)], limit: f64) -> Result<(Field, Rings), Cancelled> {
-        let field = Field::measure(&mut self.search, self.shape, seeds, limit);
+        let field = Field::measure(&mut self.search, self.shape, &self.ways, seeds, limit);
         self.cancel.check()?;
         let rings = Rings::of(self.shape, &field, Body::Large);
         self.cancel.check()?;
@@ -243,12 +235,13 @@ impl<'a> Hunt<'a> {
             };
             let mut cut = Cut::of(self.shape, field, rings, level);
             cut.limb = rings.body(level);
+            cut.share = 1.0 - cut.share;
             return Ok(Some(self.straight(&cut, NUDGE_RADII).unwrap_or(cut)));
         }
         Ok(None)
     }
 
     fn straight(&mut self, cut: &Cut, nudge: f64) -> Option<Cut> {
-        cut.straightened(&mut self.search, self.shape, &self.corners, nudge)
+        cut.straightened(&mut self.search, self.shape, &self.ways, &self.corners, nudge)
     }
 }

@@ -16,6 +16,9 @@
 //! A point on a shoulder may be beyond the askew ring of its own joint; then the straight ring decides
 //! ([`candidates::just_before`]). The head of a bust is larger than its body; then the neck between the surface's two ends
 //! is the joint ([`candidates::neck`]).
+//!
+//! If the joint is that of a large part, or there is none, the search is made again by ways that count as longer across
+//! concave creases ([`ways`]): so an ear, a head without a neck and a tail like a half ball are found.
 
 mod candidates;
 mod cut;
@@ -25,14 +28,28 @@ mod limb;
 mod origin;
 mod rings;
 mod shape;
+mod ways;
 
 use glam::DVec3;
 
+use self::candidates::SMALLEST_SHARE;
+use self::cut::Cut;
 use self::hunt::Hunt;
 pub use self::level_set::crossing as level_crossing;
 pub use self::limb::{JOINT_RINGS, Joint};
 pub use self::shape::Shape;
+use self::ways::Ways;
+use crate::geodesics::DistanceSearch;
 use crate::{Cancel, Cancelled};
+
+/// A limb with this share of the area or more, or none at all, may be wrong: rings across creases are asked, too.
+const LARGE_SHARE: f64 = 0.08;
+
+/// Their ring is at most so many times as wide as the plain one.
+const NARROWER: f64 = 0.8;
+
+/// Their ring's area over that of its limb is at most so many times as large.
+const LESS_NARROW: f64 = 2.0;
 
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more, or less
 /// if the limb is the head of a bust; `None`
@@ -54,7 +71,36 @@ pub fn joint_of(
     up: i32,
     cancel: &Cancel,
 ) -> Result<Option<Joint>, Cancelled> {
-    Hunt::new(shape, triangle, point, cancel).joint(up)
+    let hunt = |ways: Ways| Hunt::new(shape, ways, triangle, point, cancel);
+    let mut plain = hunt(Ways::plain());
+    let guess = plain.cut(0)?;
+    let is_small = |(cut, _): &(Cut, i32)| cut.share < LARGE_SHARE;
+    let (mut hunt, guess) = if guess.as_ref().is_some_and(is_small) {
+        (plain, guess)
+    } else {
+        let mut creased = hunt(Ways::across_creases(shape, shape.triangles[triangle as usize][0]));
+        let other = creased.cut(0)?;
+        match is_preferred(other.as_ref(), guess.as_ref()) {
+            true => (creased, other),
+            false => (plain, guess),
+        }
+    };
+    let found = if up > 0 { hunt.cut(up)? } else { guess };
+    let Some((cut, up)) = found else { return Ok(None) };
+    let joint = cut.joint(&mut DistanceSearch::default(), shape);
+    Ok(joint.map(|joint| Joint { up, ..joint }))
+}
+
+/// Returns true if a joint by ways that are longer across creases is better than the plain one: its limb is not a detail,
+/// its ring is clearly narrower, and not only because it cuts off less.
+fn is_preferred(creased: Option<&(Cut, i32)>, plain: Option<&(Cut, i32)>) -> bool {
+    let Some((creased, _)) = creased.filter(|(cut, _)| cut.share >= SMALLEST_SHARE) else {
+        return false;
+    };
+    plain.is_none_or(|(plain, _)| {
+        let narrowness = |cut: &Cut| cut.radius * cut.radius / cut.share;
+        creased.radius <= NARROWER * plain.radius && narrowness(creased) <= LESS_NARROW * narrowness(plain)
+    })
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use glam::DVec3;
 
 use super::level_set::{Segments, crossing};
 use super::shape::Shape;
+use super::ways::Ways;
 use crate::geodesics::DistanceSearch;
 use crate::{SurfaceVertex, face_area};
 
@@ -43,17 +44,19 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// Measures from the nearest of `seeds`, which are on one component, up to `limit`.
+    /// Measures from the nearest of `seeds`, which are on one component, up to `limit`, by these lengths of ways.
     pub(super) fn measure(
         search: &mut DistanceSearch,
         shape: &Shape<'_>,
+        ways: &Ways,
         seeds: &[(SurfaceVertex, f64)],
         limit: f64,
     ) -> Self {
         let position = |v: SurfaceVertex| shape.positions[v.index()];
         let mut distance = vec![f64::INFINITY; shape.positions.len()];
         let mut farthest = 0.0;
-        for &(v, at) in search.within(shape.triangles, shape.topology, position, seeds, limit) {
+        let stretch = |v: SurfaceVertex| ways.stretch(v);
+        for &(v, at) in search.within_stretched(shape.triangles, shape.topology, position, stretch, seeds, limit) {
             (distance[v.index()], farthest) = (at, at);
         }
         Self {

@@ -1,0 +1,164 @@
+//! The concavity of a surface at a scale: how fast its smoothed normals turn towards each other.
+//!
+//! Parts of a shape end in concave creases, by the minima rule of human vision [HR84]. Scans have such creases at every
+//! size, down to their noise, so the normals are smoothed first: (1 − σ² Δ) N = n, with n the normals of the vertices and
+//! Δ the mean of the neighbours less the vertex, over a quarter of its mean squared edge. Chebyshev's semi-iteration
+//! [GV61] solves this in some σ/h rounds, h an edge's length, where repeated averages would take (σ/h)².
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::{SurfaceVertex, Topology};
+
+/// Rounds of the iteration over the square root of the largest weight of the neighbours: the error falls to a twentieth.
+const ROUNDS: f64 = 2.0;
+
+/// The largest weight of the neighbours, which bounds the rounds to 40: a scale is at most ten edges long.
+const MOST_WEIGHT: f64 = 400.0;
+
+/// Vertices that one thread takes at a time, at least.
+const PIECE: usize = 1 << 12;
+
+/// The concavity of the surface at each of some vertices, in radians per world unit: the largest rate over its edges at
+/// which the normals, smoothed over the length `scale`, turn towards each other; 0 where the surface is flat or convex.
+/// Only these vertices, each listed once, and the triangles around them count.
+pub fn concavities(
+    triangles: &[[SurfaceVertex; 3]],
+    topology: &Topology,
+    positions: &[DVec3],
+    vertices: &[SurfaceVertex],
+    scale: f64,
+) -> Vec<f64> {
+    let mut places = vec![u32::MAX; positions.len()];
+    for (place, v) in (0..).zip(vertices) {
+        places[v.index()] = place;
+    }
+    let own = |v: &SurfaceVertex| Some(places[v.index()]).filter(|&place| place != u32::MAX);
+    let neighbours = |place: usize| topology.neighbours(vertices[place]).iter().filter_map(own);
+    let position = |place: u32| positions[vertices[place as usize].index()];
+    let of_each = || (0..vertices.len()).into_par_iter().with_min_len(PIECE);
+    let normal = |place: usize| {
+        let faces = topology.faces(vertices[place], triangles);
+        let corners = faces.map(|face| triangles[face as usize].map(|v| positions[v.index()]));
+        corners
+            .map(|[a, b, c]| (b - a).cross(c - a))
+            .sum::<DVec3>()
+            .normalize_or_zero()
+    };
+    let weight = |place: usize| {
+        let here = position(place as u32);
+        let squares = neighbours(place).map(|other| here.distance_squared(position(other)));
+        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+        // Without neighbours, or at one point with them, nothing is smoothed.
+        let weight = 4.0 * scale * scale * count / sum;
+        if weight.is_finite() {
+            weight.min(MOST_WEIGHT)
+        } else {
+            0.0
+        }
+    };
+    let normals: Vec<DVec3> = of_each().map(normal).collect();
+    let weights: Vec<f64> = of_each().map(weight).collect();
+    let mean = |present: &[DVec3], place: usize| {
+        let sum: DVec3 = neighbours(place).map(|other| present[other as usize]).sum();
+        sum / (neighbours(place).count().max(1)) as f64
+    };
+    let smooth = smoothed(&normals, &weights, mean);
+    let concavity = |place: usize| {
+        let (here, normal) = (position(place as u32), smooth[place]);
+        let rate = |other: u32| {
+            let edge = position(other) - here;
+            (normal - smooth[other as usize]).dot(edge) / edge.length_squared()
+        };
+        // `max` leaves out NaN, of edges without a length.
+        neighbours(place).map(rate).fold(0.0, f64::max)
+    };
+    of_each().map(concavity).collect()
+}
+
+/// The unit normals N with (1 + w) N − w `mean`(N) = n, nearly: w are the weights and n the normals.
+fn smoothed(normals: &[DVec3], weights: &[f64], mean: impl Fn(&[DVec3], usize) -> DVec3 + Sync) -> Vec<DVec3> {
+    let most = weights.iter().copied().fold(0.0, f64::max);
+    // The largest factor by which an average shrinks an error.
+    let shrinks = most / (1.0 + most);
+    let (mut before, mut present) = (normals.to_vec(), normals.to_vec());
+    let mut ahead = 1.0;
+    for round in 0..(ROUNDS * most.sqrt()).ceil() as usize {
+        let next = (0..normals.len()).into_par_iter().with_min_len(PIECE).map(|place| {
+            let share = weights[place] / (1.0 + weights[place]);
+            let averaged = normals[place].lerp(mean(&present, place), share);
+            before[place] + (averaged - before[place]) * ahead
+        });
+        let next: Vec<DVec3> = next.collect();
+        (before, present) = (present, next);
+        ahead = match round {
+            0 => 1.0 / (1.0 - 0.5 * shrinks * shrinks),
+            _ => 1.0 / (1.0 - 0.25 * shrinks * shrinks * ahead),
+        };
+    }
+    present
+        .par_iter_mut()
+        .with_min_len(PIECE)
+        .for_each(|normal| *normal = normal.normalize_or_zero());
+    present
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Drawn, shapes};
+
+    /// The total turn that a way along x over the whole of the surface crosses, and the largest concavity.
+    fn turn(drawn: Drawn, scale: f64) -> (f64, f64) {
+        let model = shapes::model(drawn);
+        let vertices: Vec<SurfaceVertex> = (0..model.surface.positions.len() as u32).map(SurfaceVertex).collect();
+        let (triangles, positions) = (&model.surface.triangles, &model.surface.positions);
+        let found = concavities(triangles, &model.topology, positions, &vertices, scale);
+        let most = found.iter().copied().fold(0.0, f64::max);
+        let on_way = |p: &DVec3| (p.y - 0.5).abs() < 1e-9;
+        let mut way: Vec<(DVec3, f64)> = model.surface.positions.iter().copied().zip(found).collect();
+        way.retain(|(p, _)| on_way(p));
+        way.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+        let step = |pair: &[(DVec3, f64)]| 0.5 * (pair[0].1 + pair[1].1) * pair[0].0.distance(pair[1].0);
+        (way.windows(2).map(step).sum(), most)
+    }
+
+    /// A sheet over the unit square that folds up by `angle` along x = 0.5.
+    fn folded(cells: usize, angle: f64) -> Drawn {
+        let mut drawn = shapes::grid(cells, cells);
+        for p in &mut drawn.positions {
+            let beyond = (p.x - 0.5).max(0.0);
+            *p += DVec3::new(angle.cos() - 1.0, 0.0, angle.sin()) * beyond;
+        }
+        drawn
+    }
+
+    #[test]
+    fn a_way_across_a_crease_turns_by_its_angle_on_every_mesh() {
+        for cells in [40, 80, 160] {
+            for angle in [0.3, 0.8, 1.2] {
+                let (across, _) = turn(folded(cells, angle), 0.05);
+                assert!(
+                    (0.8..1.1).contains(&(across / angle)),
+                    "{cells} cells, {angle}: {across}"
+                );
+                let (_, convex) = turn(folded(cells, -angle), 0.05);
+                assert!(convex < 0.5 * angle, "{cells} cells, −{angle}: {convex}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_and_round_shapes_have_none_and_noise_is_smoothed_away() {
+        assert!(turn(shapes::grid(40, 40), 0.05).1 < 1e-9);
+        assert!(turn(shapes::icosphere(4), 0.1).1 < 0.05);
+        let mut rough = shapes::grid(120, 120);
+        let mut number = 7_u32;
+        for p in &mut rough.positions {
+            number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            p.z += 1e-3 * (f64::from(number >> 8) / f64::from(1 << 24) - 0.5);
+        }
+        let (fine, coarse) = (turn(rough.clone(), 1e-3).0, turn(rough, 0.05).0);
+        assert!(coarse < 0.1 * fine, "{fine} {coarse}");
+    }
+}
