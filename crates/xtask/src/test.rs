@@ -60,21 +60,23 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
 /// which wait most of the time.
 fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdict) -> Result<(), String> {
     let programs = test_programs(&root())?;
-    let tests = |name: &str, targets: &[&str]| {
-        let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
+    let tests = |name: &str, cargo: fn(&[&str]) -> Command, targets: &[&str]| {
+        let mut tests = cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
         // Show the output of passing tests, because it names skipped parts.
         tests.args(targets).args(["--", "--show-output"]).args(filters);
         set_environment(&mut tests, display);
         (name.to_owned(), tests)
     };
     let of_window = programs.of_window.iter().flat_map(|name| ["--test", name]);
+    // One after the other, because they share the display, and before all others, because they wait for its answers.
+    let real = tests("real window", process::cargo, &of_window.collect::<Vec<_>>());
+    let beside = |name: &str, targets: &[&str]| tests(name, process::cargo_behind_others, targets);
     let mut queue = vec![
-        // One after the other, because they share the display.
-        tests("real window", &of_window.collect::<Vec<_>>()),
-        tests("units", &["--lib", "--bins"]),
-        tests("documentation's examples", &["--doc"]),
+        real,
+        beside("units", &["--lib", "--bins"]),
+        beside("documentation's examples", &["--doc"]),
     ];
-    queue.extend(programs.others.iter().map(|name| tests(name, &["--test", name])));
+    queue.extend(programs.others.iter().map(|name| beside(name, &["--test", name])));
     // Two builds at once would wait for each other. Examples are left out: no test runs one, and clippy compiles them.
     let all = [
         "test",
