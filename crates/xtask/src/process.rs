@@ -30,25 +30,8 @@ pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
 
 /// A cargo command in the workspace's folder, with the cargo that started this program.
 pub fn cargo(arguments: &[&str]) -> Command {
-    in_workspace(Command::new(own_cargo()), arguments)
-}
-
-/// The same, with a low priority: other programs have the processor when they want it. Where there is no `nice`, all are
-/// equal.
-pub fn cargo_behind_others(arguments: &[&str]) -> Command {
-    let Some(nice) = program("nice") else {
-        return cargo(arguments);
-    };
-    let mut command = Command::new(nice);
-    command.args(["-n", "10"]).arg(own_cargo());
-    in_workspace(command, arguments)
-}
-
-fn own_cargo() -> std::ffi::OsString {
-    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
-}
-
-fn in_workspace(mut command: Command, arguments: &[&str]) -> Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
     command.args(arguments).current_dir(crate::root::root());
     if std::env::var_os("CI").is_some() {
         // Incremental compilation only costs time and disk on a machine that builds once.

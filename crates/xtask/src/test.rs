@@ -60,23 +60,21 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
 /// which wait most of the time.
 fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdict) -> Result<(), String> {
     let programs = test_programs(&root())?;
-    let tests = |name: &str, cargo: fn(&[&str]) -> Command, targets: &[&str]| {
-        let mut tests = cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
+    let tests = |name: &str, targets: &[&str]| {
+        let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
         // Show the output of passing tests, because it names skipped parts.
         tests.args(targets).args(["--", "--show-output"]).args(filters);
         set_environment(&mut tests, display);
         (name.to_owned(), tests)
     };
     let of_window = programs.of_window.iter().flat_map(|name| ["--test", name]);
-    // One after the other, because they share the display, and before all others, because they wait for its answers.
-    let real = tests("real window", process::cargo, &of_window.collect::<Vec<_>>());
-    let beside = |name: &str, targets: &[&str]| tests(name, process::cargo_behind_others, targets);
     let mut queue = vec![
-        real,
-        beside("units", &["--lib", "--bins"]),
-        beside("documentation's examples", &["--doc"]),
+        // One after the other, because they share the display.
+        tests("real window", &of_window.collect::<Vec<_>>()),
+        tests("units", &["--lib", "--bins"]),
+        tests("documentation's examples", &["--doc"]),
     ];
-    queue.extend(programs.others.iter().map(|name| beside(name, &["--test", name])));
+    queue.extend(programs.others.iter().map(|name| tests(name, &["--test", name])));
     // Two builds at once would wait for each other. Examples are left out: no test runs one, and clippy compiles them.
     let all = [
         "test",
@@ -92,9 +90,9 @@ fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdic
     Ok(())
 }
 
-/// The commands that run at once: those of the real window, and two others, because each of these ends with one long
-/// test that leaves all but one processor idle.
-const AT_ONCE: usize = 3;
+/// The commands that run at once: those of the real window, and one other. Beside two others on two processors the window
+/// does not answer within its tests' patience.
+const AT_ONCE: usize = 2;
 
 /// Sets the virtual display and the driver for comparing pictures.
 fn set_environment(tests: &mut Command, display: Option<&Display>) {
