@@ -90,8 +90,8 @@ fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdic
     Ok(())
 }
 
-/// The commands that run at once: those of the real window, and one other. Beside two others on two processors the window
-/// does not answer within its tests' patience.
+/// The commands that run at once: those of the real window, and one other, which already keeps two processors busy. In a
+/// run beside two others and a build the window did not answer within its tests' patience.
 const AT_ONCE: usize = 2;
 
 /// Sets the virtual display and the driver for comparing pictures.

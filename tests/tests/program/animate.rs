@@ -56,6 +56,25 @@ fn keys() -> Value {
     ])
 }
 
+/// The animation of an edit, by the engine itself.
+fn animation<'a>(file: &'a Path, (edit, edit_path): (&'a Beginning, &'a Path), output: &'a Path) -> Animate<'a> {
+    Animate {
+        job: EditJob {
+            file,
+            edit,
+            edit_path,
+            output,
+            report: None,
+            weld: None,
+            budget: memory::budget(),
+        },
+        name: "f",
+        tolerance: MORPH_TOLERANCE,
+        fps: 8.0,
+        frames: ExistingFrames::Keep,
+    }
+}
+
 fn animate(folder: &Folder, edit: &Value, out: &str, more: &[&str]) -> Ended {
     let (file, edit_at) = (folder.at("bar.off"), folder.write("edit.json", edit.to_string()));
     let words = ["animate".into(), file.into_os_string(), "--edit".into(), edit_at.into()];
@@ -306,21 +325,7 @@ fn an_animation_that_is_stopped_anywhere_leaves_the_folder_as_it_was() {
         let edit_at = folder.write("edit.json", edit("bilaplacian", &json!({}), &keys()).to_string());
         let edit = read_edit(&edit_at, &Watch::default()).unwrap();
         let output = folder.at(out);
-        let animation = Animate {
-            job: EditJob {
-                file: &file,
-                edit: &edit,
-                edit_path: &edit_at,
-                output: &output,
-                report: None,
-                weld: None,
-                budget: memory::budget(),
-            },
-            name: "f",
-            tolerance: MORPH_TOLERANCE,
-            fps: 8.0,
-            frames: ExistingFrames::Keep,
-        };
+        let animation = animation(&file, (&edit, &edit_at), &output);
         let mut stops = 0;
         for looks in (0..100).map(|step| step + step * step / 2) {
             let watch = Watch::cancelled_by(&Cancel::after_looks(looks));
@@ -354,21 +359,7 @@ fn kept_dye_is_in_every_frame_and_in_a_gltf_and_named_where_it_can_not_be() {
         ("f-#.stl", None),
     ] {
         let output = folder.at(out);
-        let animation = Animate {
-            job: EditJob {
-                file: &file,
-                edit: &edit,
-                edit_path: &edit_at,
-                output: &output,
-                report: None,
-                weld: None,
-                budget: memory::budget(),
-            },
-            name: "f",
-            tolerance: MORPH_TOLERANCE,
-            fps: 8.0,
-            frames: ExistingFrames::Keep,
-        };
+        let animation = animation(&file, (&edit, &edit_at), &output);
         let (watch, staging) = (Watch::default(), Staging::default());
         let animated = stage_animation(&animation, &loaded, (with_keys, Some(&dye)), &watch, &staging).unwrap();
         let said = animated.report.warnings.join(" ");
