@@ -2,10 +2,14 @@
 //! their limits.
 
 use glam::{DQuat, DVec3};
-use pliant_mesh::{BendRange, JointLimits, pulled_within};
+use pliant_mesh::{BendRange, JointLimits, pulled_briefly, pulled_within};
 
 /// The most times that both sides of a pulled point between two pins answer each other.
 const MOST_ANSWERS: usize = 200;
+
+/// Both sides do not meet if so many answers leave more than [`SLOW`] of the gap between them.
+const LOOK: usize = 8;
+const SLOW: f64 = 0.9;
 
 /// The distance at which both sides meet, as a share of the chain's length.
 const MET: f64 = 1e-10;
@@ -14,7 +18,7 @@ const MET: f64 = 1e-10;
 const ROUNDING_RAD: f64 = 1e-9;
 
 /// The steps by which a point between two pins comes near to the place where a limit or the pins stop it.
-const HALVINGS: u32 = 12;
+const HALVINGS: u32 = 8;
 
 /// A chain of points, the numbers of those that stay, and the bends that they may have, one for each point or none.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +67,7 @@ impl Chain<'_> {
     /// the joint at the point needs.
     fn pulled_forwards(&self, before: usize, point: usize, target: DVec3) -> Vec<DVec3> {
         let mut pulled = self.points.to_vec();
-        let own = self.part(before, point, target);
+        let own = pulled_within(&self.points[before..=point], target, self.limits(before));
         pulled[before..=point].copy_from_slice(&own);
         let (from, to) = (self.points[point], pulled[point]);
         let turn = self.points.get(point + 1).map_or(DQuat::IDENTITY, |next| {
@@ -83,11 +87,6 @@ impl Chain<'_> {
             };
         }
         pulled
-    }
-
-    /// The points from a pin to a pulled one.
-    fn part(&self, before: usize, point: usize, target: DVec3) -> Vec<DVec3> {
-        pulled_within(&self.points[before..=point], target, self.limits(before))
     }
 
     /// The limits of the joints from `first` on.
@@ -131,14 +130,21 @@ impl Chain<'_> {
             pinned: &[],
             bends: &bends,
         };
-        let last = self.points.len() - 1;
-        let mut goal = target;
-        for _ in 0..MOST_ANSWERS {
-            let left = self.part(before, point, goal);
+        let end = self.points.len() - 1;
+        let (first, last) = (end - behind, end - point);
+        let (mut left, mut right) = (self.points[before..=point].to_vec(), reversed[first..=last].to_vec());
+        let (mut goal, mut looked) = (target, f64::INFINITY);
+        for answer in 1..=MOST_ANSWERS {
+            left = pulled_briefly(&left, goal, self.limits(before));
             let met = left[point - before];
-            let right = turned.part(last - behind, last - point, met);
+            right = pulled_briefly(&right, met, turned.limits(first));
             goal = right[behind - point];
-            if goal.distance(met) > MET * whole {
+            let gap = goal.distance(met);
+            if gap > MET * whole {
+                if answer % LOOK == 0 && gap > SLOW * looked {
+                    return None;
+                }
+                looked = if answer % LOOK == 0 { gap } else { looked };
                 continue;
             }
             let mut pulled = self.points.to_vec();

@@ -9,7 +9,10 @@ use glam::DVec3;
 const MOST_PASSES: usize = 20_000;
 
 /// The same for a chain with limits, whose passes may come to rest away from the target.
-const MOST_LIMITED_PASSES: usize = 4_000;
+const MOST_LIMITED_PASSES: usize = 1_000;
+
+/// The same for each part of a way, and for callers that ask many times.
+const FEW_PASSES: usize = 100;
 
 /// The parts of the way in which a chain with limits goes to a target that it does not find at once.
 const STEPS: u32 = 16;
@@ -73,32 +76,47 @@ pub fn pulled_chain(points: &[DVec3], target: DVec3) -> Vec<DVec3> {
 /// The same with joints that bend within `limits`. A chain that is beyond them comes into them. Narrow limits can keep the
 /// passes from a target that another pose would reach; the chain then ends as near to it as they come.
 pub fn pulled_within(points: &[DVec3], target: DVec3, limits: JointLimits<'_>) -> Vec<DVec3> {
-    let mut chain = points.to_vec();
-    let [root, .., end] = *points else { return chain };
+    let chain = pulled_in(MOST_LIMITED_PASSES, points, target, limits);
+    let [.., end] = *points else { return chain };
     let whole: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-    if end == target {
-        return chain;
-    }
-    if limits.are_free() {
-        if target.distance(root) >= whole * (1.0 - STRETCHED) {
-            stretch(&mut chain, target);
-        } else {
-            reach(&mut chain, target, JointLimits::default(), MOST_PASSES);
-        }
-        return chain;
-    }
-    let missed = reach(&mut chain, target, limits, MOST_LIMITED_PASSES);
-    if missed <= ARRIVED * whole {
+    let missed = chain[chain.len() - 1].distance(target);
+    if limits.are_free() || missed <= ARRIVED * whole {
         return chain;
     }
     // Joints at their limits block some ways: in small steps the chain stays with poses that are near to each other.
     let mut walking = points.to_vec();
-    let mut last = f64::INFINITY;
-    for step in 1..=STEPS {
+    for step in 1..STEPS {
         let goal = end.lerp(target, f64::from(step) / f64::from(STEPS));
-        last = reach(&mut walking, goal, limits, MOST_LIMITED_PASSES);
+        reach(&mut walking, goal, limits, FEW_PASSES);
     }
+    let last = reach(&mut walking, target, limits, MOST_LIMITED_PASSES);
     if last < missed { walking } else { chain }
+}
+
+/// [`pulled_within`] for callers that ask many times and go on from the last answer: it looks for no way around limits, and
+/// may stop before it arrives.
+pub fn pulled_briefly(points: &[DVec3], target: DVec3, limits: JointLimits<'_>) -> Vec<DVec3> {
+    pulled_in(FEW_PASSES, points, target, limits)
+}
+
+/// The pulled chain after so many passes, if it has limits.
+fn pulled_in(limited_passes: usize, points: &[DVec3], target: DVec3, limits: JointLimits<'_>) -> Vec<DVec3> {
+    let mut chain = points.to_vec();
+    let [root, .., end] = *points else { return chain };
+    if end == target {
+        return chain;
+    }
+    if !limits.are_free() {
+        reach(&mut chain, target, limits, limited_passes);
+        return chain;
+    }
+    let whole: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    if target.distance(root) >= whole * (1.0 - STRETCHED) {
+        stretch(&mut chain, target);
+    } else {
+        reach(&mut chain, target, JointLimits::default(), MOST_PASSES);
+    }
+    chain
 }
 
 /// Stretches a chain towards a target that it just or never reaches, where the passes converge slowly.

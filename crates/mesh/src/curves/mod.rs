@@ -14,7 +14,7 @@ mod motion;
 mod spline;
 
 pub use between::CurvePath;
-pub use chain::{BendRange, FREE_BEND, JointLimits, pulled_chain, pulled_within};
+pub use chain::{BendRange, FREE_BEND, JointLimits, pulled_briefly, pulled_chain, pulled_within};
 pub use curve::{Curve, CurveRefused, LARGEST_TWIST_DEG, SCALE_RANGE};
 pub use laid::triangles_under;
 pub use motion::CurveMotion;
