@@ -127,9 +127,9 @@ impl MovedControls {
         match self.points.as_slice() {
             [(point, from)] if self.is_chain && !curve.rest().is_closed() => {
                 let chain = Chain {
-                    points: &seen,
-                    pinned: curve.pinned(),
-                    bends: &curve.bends_rad(),
+                    points: seen,
+                    pinned: curve.pinned().to_vec(),
+                    bends: curve.bends_rad(),
                 };
                 seen = chain.pulled(*point as usize, *from + way(*from));
             }

@@ -7,8 +7,10 @@ use pliant_mesh::{BendRange, JointLimits, pulled_briefly, pulled_within};
 /// The most times that both sides of a pulled point between two pins answer each other.
 const MOST_ANSWERS: usize = 200;
 
-/// Both sides do not meet if so many answers leave more than [`SLOW`] of the gap between them.
+/// After so many answers, and again after as many, it is looked whether both sides still come nearer.
 const LOOK: usize = 8;
+
+/// They do not meet if more than this share of the gap between them is left since the last look.
 const SLOW: f64 = 0.9;
 
 /// The distance at which both sides meet, as a share of the chain's length.
@@ -21,14 +23,14 @@ const ROUNDING_RAD: f64 = 1e-9;
 const HALVINGS: u32 = 8;
 
 /// A chain of points, the numbers of those that stay, and the bends that they may have, one for each point or none.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Chain<'a> {
-    pub(super) points: &'a [DVec3],
-    pub(super) pinned: &'a [u32],
-    pub(super) bends: &'a [BendRange],
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    pub(super) points: Vec<DVec3>,
+    pub(super) pinned: Vec<u32>,
+    pub(super) bends: Vec<BendRange>,
 }
 
-impl Chain<'_> {
+impl Chain {
     /// The chain with the given point pulled to a target, or as near to it as pins and limits let it come. Pinned points
     /// stay, and so does all beyond the nearest pin on either side. Without a pin before the pulled point the first point
     /// is one, and the points behind the pulled one keep their distances from it; the first point itself pulls the chain
@@ -49,17 +51,22 @@ impl Chain<'_> {
             (Some(before), Some(behind)) => self.pulled_between(before, point, behind, target),
             (Some(before), None) => self.pulled_forwards(before, point, target),
             (None, behind) => {
-                let reversed: Vec<DVec3> = self.points.iter().rev().copied().collect();
-                let bends: Vec<BendRange> = self.bends.iter().rev().copied().collect();
-                let turned = Chain {
-                    points: &reversed,
-                    pinned: &[],
-                    bends: &bends,
-                };
-                let mut pulled = turned.pulled_forwards(last - behind.unwrap_or(last), last - point, target);
+                let mut pulled = self
+                    .reversed()
+                    .pulled_forwards(last - behind.unwrap_or(last), last - point, target);
                 pulled.reverse();
                 pulled
             }
+        }
+    }
+
+    /// The same chain from its last point to its first.
+    fn reversed(&self) -> Self {
+        let last = self.points.len() as u32 - 1;
+        Self {
+            points: self.points.iter().rev().copied().collect(),
+            pinned: self.pinned.iter().rev().map(|pin| last - pin).collect(),
+            bends: self.bends.iter().rev().copied().collect(),
         }
     }
 
@@ -123,21 +130,18 @@ impl Chain<'_> {
             .windows(2)
             .map(|pair| pair[0].distance(pair[1]));
         let whole: f64 = lengths.sum();
-        let reversed: Vec<DVec3> = self.points.iter().rev().copied().collect();
-        let bends: Vec<BendRange> = self.bends.iter().rev().copied().collect();
-        let turned = Chain {
-            points: &reversed,
-            pinned: &[],
-            bends: &bends,
-        };
+        let reversed = self.reversed();
         let end = self.points.len() - 1;
         let (first, last) = (end - behind, end - point);
-        let (mut left, mut right) = (self.points[before..=point].to_vec(), reversed[first..=last].to_vec());
+        let (mut left, mut right) = (
+            self.points[before..=point].to_vec(),
+            reversed.points[first..=last].to_vec(),
+        );
         let (mut goal, mut looked) = (target, f64::INFINITY);
         for answer in 1..=MOST_ANSWERS {
             left = pulled_briefly(&left, goal, self.limits(before));
             let met = left[point - before];
-            right = pulled_briefly(&right, met, turned.limits(first));
+            right = pulled_briefly(&right, met, reversed.limits(first));
             goal = right[behind - point];
             let gap = goal.distance(met);
             if gap > MET * whole {
@@ -175,7 +179,8 @@ mod tests {
     }
 
     fn pulled_at(points: &[DVec3], pinned: &[u32], point: usize, target: DVec3) -> Vec<DVec3> {
-        let bends = &[];
+        let (points, pinned) = (points.to_vec(), pinned.to_vec());
+        let bends = Vec::new();
         Chain { points, pinned, bends }.pulled(point, target)
     }
 
@@ -238,9 +243,9 @@ mod tests {
         let bends = [[0.01, 0.5]; 7];
         for pinned in [&[][..], &[3], &[0, 6], &[2, 5]] {
             let chain = Chain {
-                points: &points,
-                pinned,
-                bends: &bends,
+                points: points.clone(),
+                pinned: pinned.to_vec(),
+                bends: bends.to_vec(),
             };
             for point in (0..points.len()).filter(|point| !pinned.contains(&(*point as u32))) {
                 for by in [

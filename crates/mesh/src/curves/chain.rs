@@ -20,8 +20,10 @@ const STEPS: u32 = 16;
 /// The distance from the target at which the end has arrived, as a share of the chain's length.
 const ARRIVED: f64 = 1e-10;
 
-/// A chain with limits rests if so many passes leave more than [`SLOW`] of the way to the target.
+/// After so many passes, and again after as many, it is looked whether a chain with limits still comes nearer.
 const LOOK: usize = 32;
+
+/// It rests if more than this share of the way to the target is left since the last look.
 const SLOW: f64 = 0.98;
 
 /// A chain whose target is within this share of its length from its full reach is straight.
