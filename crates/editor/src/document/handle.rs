@@ -80,9 +80,13 @@ pub(crate) const PART_RADII: f64 = 3.0;
 /// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
-    /// To the end of the part that the handle is on, where the surface around it widens; at most three radii.
+    /// To the end of the part that the handle is on, which is where the surface around it widens or at a concave crease; at
+    /// most three radii.
     #[default]
     Part,
+    /// This distance in world units, where ways across concave creases count as longer, as they do for
+    /// [`Reach::Part`].
+    Creased(f64),
     /// This many of the handle's own radii (above 0).
     Radii(f64),
     /// This distance in world units (0: only the painted vertices).

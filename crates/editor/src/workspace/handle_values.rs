@@ -55,7 +55,7 @@ pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::
 pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     let is_in_range = match reach {
         Reach::Part => true,
-        Reach::Radii(size) | Reach::Length(size) => size.is_finite() && size >= 0.0,
+        Reach::Creased(size) | Reach::Radii(size) | Reach::Length(size) => size.is_finite() && size >= 0.0,
     };
     if !is_in_range {
         workspace.refuse("The reach is out of range: enter a length of at least 0.");

@@ -105,7 +105,8 @@ fn what_was_saved_is_what_is_opened_to_the_bit() {
                 _ => {
                     if let Some(id) = rig.editor.view().selected {
                         let first = rig.editor.document().handles()[0].id;
-                        rig.command(Command::SetReach(id, Reach::Length(0.4)));
+                        let reach = if step % 2 == 0 { Reach::Length } else { Reach::Creased };
+                        rig.command(Command::SetReach(id, reach(0.4)));
                         rig.command(Command::SetParent(id, Some(first)));
                     }
                 }

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use crate::rig::{Fingerprint, Rig, VIEWPORT_PX};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
-use pliant_editor::{Command, HandleTransform, Key, NamedView, Paint, StiffnessBrush, Symmetry, ToolMode};
+use pliant_editor::{Command, HandleTransform, Key, NamedView, Paint, Reach, StiffnessBrush, Symmetry, ToolMode};
 use pliant_mesh::{Drawn, shapes};
 
 /// A body that is symmetric across x = 0 alone, seen from the front, with its arms left and right.
@@ -113,6 +113,9 @@ fn a_handle_on_one_side_has_a_twin_on_the_other_that_moves_in_a_mirror() {
         scale: DVec3::ONE,
         pivot: None,
     };
+    for id in [first.id, second.id] {
+        rig.command(Command::SetReach(id, Reach::Radii(3.0)));
+    }
     rig.command(Command::SetHandleTransform(first.id, transform));
     rig.drain();
     let positions = &rig.model.surface.positions;

@@ -65,6 +65,7 @@ enum StoredPivotPlace {
 #[serde(rename_all = "kebab-case")]
 enum StoredReach {
     Part,
+    Creased(f64),
     Radii(f64),
     Length(f64),
 }
@@ -112,6 +113,7 @@ impl StoredHandle {
             },
             reach: match handle.reach {
                 Reach::Part => StoredReach::Part,
+                Reach::Creased(length) => StoredReach::Creased(length),
                 Reach::Radii(radii) => StoredReach::Radii(radii),
                 Reach::Length(length) => StoredReach::Length(length),
             },
@@ -145,7 +147,9 @@ impl StoredHandle {
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
         let is_reach_refused = match self.reach {
             StoredReach::Part => false,
-            StoredReach::Radii(size) | StoredReach::Length(size) => !(size.is_finite() && size >= 0.0),
+            StoredReach::Creased(size) | StoredReach::Radii(size) | StoredReach::Length(size) => {
+                !(size.is_finite() && size >= 0.0)
+            }
         };
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
@@ -181,6 +185,7 @@ impl StoredHandle {
             },
             reach: match self.reach {
                 StoredReach::Part => Reach::Part,
+                StoredReach::Creased(length) => Reach::Creased(length),
                 StoredReach::Radii(radii) => Reach::Radii(radii),
                 StoredReach::Length(length) => Reach::Length(length),
             },
