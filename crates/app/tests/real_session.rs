@@ -12,10 +12,10 @@
 
 mod desktop;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
-use desktop::{Desktop, SIZE};
+use desktop::{Desktop, SIZE, sample_in};
 use pliant_engine::Loaded;
 use pliant_engine::watch::Watch;
 use pliant_mesh::WeldOptions;
@@ -23,11 +23,6 @@ use serde_json::Value;
 
 /// The middle of the 3D view, which takes the window except the panel.
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 36);
-
-fn sample() -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/bar.glb");
-    path.canonicalize().unwrap()
-}
 
 fn load(path: &Path) -> Loaded {
     pliant_engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
@@ -47,10 +42,9 @@ fn document(project: &Value) -> Value {
 
 #[test]
 fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
-    let Some(desktop) = Desktop::open(&sample()) else {
-        return;
-    };
     let folder = tempfile::tempdir().unwrap();
+    let sample = sample_in(folder.path());
+    let Some(desktop) = Desktop::open(&sample) else { return };
     let once = |name: &str, holds: &dyn Fn(&Value) -> bool| desktop.project_once(folder.path(), name, holds);
     let (x, y) = MIDDLE;
     desktop.wait_for_title("bar.glb");
@@ -131,7 +125,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     desktop.wait_for_title("bar.glb");
     once("reopened", &|project| document(project) == document(&last));
     desktop.shoot("reopened");
-    let (rest, saved) = (load(&sample()), load(&saved));
+    let (rest, saved) = (load(&sample), load(&saved));
     let moved = rest
         .model
         .rest_positions()

@@ -13,12 +13,12 @@
 
 mod desktop;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
 
-use desktop::{Desktop, PATIENCE, PAUSE, PLIANT, SIZE};
+use desktop::{Desktop, PATIENCE, PAUSE, PLIANT, SIZE, sample_in};
 use pliant_deform::Method;
 use pliant_engine::Loaded;
 use pliant_engine::watch::Watch;
@@ -59,11 +59,6 @@ impl Desktop {
     }
 }
 
-fn sample() -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../assets/bar.glb");
-    path.canonicalize().unwrap()
-}
-
 /// The middle of the 3D view, which takes the window except the panel.
 const MIDDLE: (i32, i32) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
 
@@ -83,9 +78,9 @@ fn farthest(a: &Loaded, b: &Loaded) -> f64 {
 
 #[test]
 fn pointer_and_keys_make_the_shape_that_the_engine_says() {
-    let sample = sample();
-    let Some(desktop) = Desktop::open(&sample) else { return };
     let folder = tempfile::tempdir().unwrap();
+    let sample = sample_in(folder.path());
+    let Some(desktop) = Desktop::open(&sample) else { return };
     desktop.wait_for_title("bar.glb");
     sleep(8 * PAUSE);
 
@@ -114,10 +109,11 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
 /// the number of kills; it is small by default.
 #[test]
 fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
-    let Some(mut desktop) = Desktop::open(&sample()) else {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = sample_in(folder.path());
+    let Some(mut desktop) = Desktop::open(&sample) else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
     let kills = std::env::var("PLIANT_KILLS")
         .ok()
         .and_then(|kills| kills.parse().ok())
@@ -147,7 +143,7 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
         let kept: serde_json::Value = serde_json::from_str(&text).expect("it is written whole");
         assert_eq!(kept["handles"].as_array().map(Vec::len), Some(1), "kill {kill}");
 
-        desktop.start(&sample());
+        desktop.start(&sample);
         desktop.wait_for_title("Recover unsaved work");
         sleep(4 * PAUSE);
         desktop.shoot("recover");
@@ -169,13 +165,15 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
             sleep(PAUSE);
         }
         desktop.kill();
-        desktop.start(&sample());
+        desktop.start(&sample);
     }
 }
 
 #[test]
 fn text_comes_from_other_programs_and_goes_to_them() {
-    let Some(desktop) = Desktop::open(&sample()) else {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = sample_in(folder.path());
+    let Some(desktop) = Desktop::open(&sample) else {
         return;
     };
     if !desktop.copy_elsewhere("painted") {
@@ -193,7 +191,9 @@ fn text_comes_from_other_programs_and_goes_to_them() {
 /// A window that filled the screen does so when the program starts again; another one has its size.
 #[test]
 fn a_maximised_window_comes_back_maximised() {
-    let Some(mut desktop) = Desktop::open(&sample()) else {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = sample_in(folder.path());
+    let Some(mut desktop) = Desktop::open(&sample) else {
         return;
     };
     desktop.wait_for_title("bar.glb");
@@ -213,6 +213,6 @@ fn a_maximised_window_comes_back_maximised() {
         sleep(PAUSE);
     }
     desktop.kill();
-    desktop.launch(&sample());
+    desktop.launch(&sample);
     desktop.wait_for_width(fills_screen);
 }

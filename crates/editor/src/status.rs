@@ -90,8 +90,12 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
     let is_sketching = settings.mode == ToolMode::PaintHandle && settings.stroke_shape == StrokeShape::Sketch;
     let hint = if settings.mode == ToolMode::Flow {
+        let fluid = document.fluid();
         match workspace.flow.is_playing() {
             true => "Pour and push, or press Space to pause",
+            false if fluid.kept.is_some() && fluid.dye.is_none() => {
+                "The kept colours are saved with the model, as vertex colours; pour on, and press Space to play"
+            }
             false => "Pour and push, and press Space to play; Ctrl washes, Shift only pushes",
         }
     } else if is_sketching {

@@ -25,8 +25,8 @@ pub enum MeshChange {
     Bridge([SurfaceVertex; 2]),
     /// Deletes vertices, with every triangle that uses one.
     Delete(Vec<SurfaceVertex>),
-    /// Cuts along a plane.
-    Cut(CutPlane, KeptSide),
+    /// Cuts along a plane. These vertices are spared, which are all those of some connected parts.
+    Cut(CutPlane, KeptSide, Vec<SurfaceVertex>),
     /// Puts another file of this name beside the shape. The caller knows the file.
     Append(String),
     /// Joins a part to the others.
@@ -145,9 +145,7 @@ impl StitchRequest {
             MeshChange::Append(name) => document.hold_new_part(name, &matching, &model),
             _ => None,
         };
-        if moved.is_some() {
-            document.centre_pivots(&model);
-        }
+        document.centre_pivots(&model);
         Ok(NewMesh {
             former: Former::of(before, &matching, &model),
             document,

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::path_text::shown;
+
 /// The place of `#`s in a name: before its extension, after this.
 const BEFORE: char = '-';
 
@@ -53,6 +55,23 @@ impl Frames {
                 Some(place.into())
             }
         }
+    }
+
+    /// A clause about files that stay beside numbered ones and seem to belong to them, because their numbers go on.
+    pub fn left_after(&self) -> Option<String> {
+        let Self::Each { steps, .. } = self else { return None };
+        let after = (*steps + 1..).map_while(|step| self.at(step).filter(|place| place.exists()));
+        let names: Vec<String> = after
+            .filter_map(|place| place.file_name().map(|name| shown(Path::new(name))))
+            .collect();
+        let (first, last) = (names.first()?, names.last()?);
+        Some(match names.len() {
+            1 => format!("{first} is not one of these frames, and stays: delete it if it belongs to an earlier export"),
+            count => format!(
+                "{count} files from {first} to {last} are none of these frames, and stay: delete them if they belong to \
+                 an earlier export"
+            ),
+        })
     }
 
     /// All files.

@@ -75,7 +75,8 @@ mod transfer;
 pub mod watch;
 
 pub use animate::{
-    Animate, Animated, AnimationReport, ExistingFrames, MORPH_TOLERANCE, MorphReport, animate, stage_animation,
+    Animate, Animated, AnimationReport, ExistingFrames, MORPH_TOLERANCE, MorphReport, animate, animation_path,
+    stage_animation,
 };
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, order, prepare, solved};
 pub use difference::{Compared, differences};

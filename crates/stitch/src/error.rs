@@ -10,7 +10,10 @@ pub enum StitchError {
     /// The flag was raised.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A closed surface has nothing to fill or to join.
+    /// A closed surface has nothing to fill.
+    #[error("the surface is closed: it has no hole to fill")]
+    NoHole,
+    /// A closed surface has no border to join, or to name.
     #[error("the surface has no border: cut a part out first")]
     NoBorder,
     /// A given vertex is inside the surface or in no triangle, but should be on a border.

@@ -57,12 +57,13 @@ impl Plane {
 
 impl NewShape {
     /// Cuts a part along a plane. Vertices that are left keep their order and come before new ones. A triangle in the
-    /// plane belongs to the positive side.
+    /// plane belongs to the positive side. `spared` has a flag for each surface vertex that stays, with whole connected
+    /// parts, wherever the plane is; a missing one is false.
     ///
     /// # Errors
-    /// [`StitchError::PlaneMisses`] if the plane has the whole surface on one side.
-    pub fn cut_along(part: &Part<'_>, plane: &Plane, keep: Keep) -> Result<Self, StitchError> {
-        let mut cutting = Cutting::of(part, plane, keep)?;
+    /// [`StitchError::PlaneMisses`] if the plane has everything else on one side.
+    pub fn cut_along(part: &Part<'_>, plane: &Plane, keep: Keep, spared: &[bool]) -> Result<Self, StitchError> {
+        let mut cutting = Cutting::of(part, plane, keep, spared)?;
         for (triangle, corners) in (0..).zip(&part.drawn.triangles) {
             if !part.is_broken(corners) {
                 cutting.add(triangle, *corners);
@@ -94,7 +95,7 @@ struct CutPoint {
 struct Cutting<'a> {
     part: &'a Part<'a>,
     keep: Keep,
-    /// The distance of each surface vertex from the plane: 0 on it.
+    /// The distance of each surface vertex from the plane: 0 on it. A spared one counts as far on a kept side.
     distances: Vec<f64>,
     points: Vec<CutPoint>,
     point_of: BTreeMap<[DrawnVertex; 2], u32>,
@@ -103,15 +104,22 @@ struct Cutting<'a> {
 }
 
 impl<'a> Cutting<'a> {
-    fn of(part: &'a Part<'a>, plane: &Plane, keep: Keep) -> Result<Self, StitchError> {
+    fn of(part: &'a Part<'a>, plane: &Plane, keep: Keep, spared: &[bool]) -> Result<Self, StitchError> {
         let positions = &part.model.surface.positions;
-        let touch = TOUCH * part.model.bounds().map_or(0.0, |bounds| bounds.diagonal());
-        let distance = |&position: &DVec3| {
-            let distance = plane.distance(position);
-            if distance.abs() <= touch { 0.0 } else { distance }
+        let diagonal = part.model.bounds().map_or(0.0, |bounds| bounds.diagonal());
+        let touch = TOUCH * diagonal;
+        let is_spared = |vertex: usize| spared.get(vertex) == Some(&true);
+        let distance = |(vertex, &position): (usize, &DVec3)| match (is_spared(vertex), keep) {
+            (true, Keep::Negative) => -diagonal,
+            (true, Keep::Positive | Keep::Both) => diagonal,
+            (false, _) => {
+                let distance = plane.distance(position);
+                if distance.abs() <= touch { 0.0 } else { distance }
+            }
         };
-        let distances: Vec<f64> = positions.iter().map(distance).collect();
+        let distances: Vec<f64> = positions.iter().enumerate().map(distance).collect();
         let used = part.model.surface.triangles.iter().flatten();
+        let used = used.filter(|vertex| !is_spared(vertex.index()));
         let (low, high) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), vertex| {
             let own = distances[vertex.index()];
             (low.min(own), high.max(own))

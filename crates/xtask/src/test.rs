@@ -56,28 +56,43 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     verdict.conclude(started, skips)
 }
 
-/// Builds and runs all tests of the workspace: the programs that drive the real window beside the others, then the
-/// examples of the documentation.
+/// Builds and runs all tests of the workspace: a queue of test programs, and beside it those that drive the real window,
+/// which wait most of the time.
 fn workspace(filters: &[String], display: Option<&Display>, verdict: &mut Verdict) -> Result<(), String> {
     let programs = test_programs(&root())?;
-    let tests = |targets: &[&str], names: &[String]| {
+    let tests = |name: &str, targets: &[&str]| {
         let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-        tests.args(targets);
-        tests.args(names.iter().flat_map(|name| ["--test", name]));
         // Show the output of passing tests, because it names skipped parts.
-        tests.args(["--", "--show-output"]).args(filters);
+        tests.args(targets).args(["--", "--show-output"]).args(filters);
         set_environment(&mut tests, display);
-        tests
+        (name.to_owned(), tests)
     };
-    // Two builds at once would wait for each other.
-    process::succeed(&mut process::cargo(&["test", "--locked", "--workspace", "--no-run"]))?;
-    verdict.tests_beside(
-        ("workspace", &mut tests(&["--lib", "--bins"], &programs.others)),
-        ("real window", &mut tests(&[], &programs.of_window)),
-    );
-    verdict.tests("documentation's examples", &mut tests(&["--doc"], &[]));
+    let of_window = programs.of_window.iter().flat_map(|name| ["--test", name]);
+    let mut queue = vec![
+        // One after the other, because they share the display.
+        tests("real window", &of_window.collect::<Vec<_>>()),
+        tests("units", &["--lib", "--bins"]),
+        tests("documentation's examples", &["--doc"]),
+    ];
+    queue.extend(programs.others.iter().map(|name| tests(name, &["--test", name])));
+    // Two builds at once would wait for each other. Examples are left out: no test runs one, and clippy compiles them.
+    let all = [
+        "test",
+        "--locked",
+        "--workspace",
+        "--lib",
+        "--bins",
+        "--tests",
+        "--no-run",
+    ];
+    process::succeed(&mut process::cargo(&all))?;
+    verdict.tests_at_once(queue, AT_ONCE);
     Ok(())
 }
+
+/// The commands that run at once: those of the real window, and one other, which already keeps two processors busy. In a
+/// run beside two others and a build the window did not answer within its tests' patience.
+const AT_ONCE: usize = 2;
 
 /// Sets the virtual display and the driver for comparing pictures.
 fn set_environment(tests: &mut Command, display: Option<&Display>) {

@@ -1,12 +1,14 @@
 //! The test programs of the workspace, by name.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 /// Programs with this prefix drive the real window. They wait most of the time, so they run beside the others.
 const REAL_WINDOW: &str = "real_";
 
-/// The names of the workspace's test programs, sorted.
+/// The names of the workspace's test programs. Those with the most source come first, because they run the longest:
+/// none of them is left to run alone when the others have ended.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct TestPrograms {
     /// Those that drive the real window.
@@ -24,22 +26,40 @@ pub fn test_programs(root: &Path) -> Result<TestPrograms, String> {
     for folder in entries(&root.join("crates"))? {
         names.extend(of_crate(&folder)?);
     }
-    names.sort();
-    names.dedup();
-    let (of_window, others) = names.into_iter().partition(|name| name.starts_with(REAL_WINDOW));
+    // Several crates may have a program of one name; cargo runs them all by it.
+    let mut sizes = BTreeMap::<String, u64>::new();
+    for (name, size) in names {
+        *sizes.entry(name).or_default() += size;
+    }
+    let mut names = sizes.into_iter().collect::<Vec<_>>();
+    names.sort_by_key(|&(_, size)| std::cmp::Reverse(size));
+    let names = names.into_iter().map(|(name, _)| name);
+    let (of_window, others) = names.partition(|name| name.starts_with(REAL_WINDOW));
     Ok(TestPrograms { of_window, others })
 }
 
-fn of_crate(folder: &Path) -> Result<Vec<String>, String> {
+/// The programs of a crate, each with the bytes of its source.
+fn of_crate(folder: &Path) -> Result<Vec<(String, u64)>, String> {
     let tests = folder.join("tests");
     if !tests.is_dir() || !folder.join("Cargo.toml").is_file() {
         return Ok(Vec::new());
     }
     let is_program = |path: &Path| path.extension().is_some_and(|end| end == "rs") || path.join("main.rs").is_file();
     let programs = entries(&tests)?.into_iter().filter(|path| is_program(path));
-    Ok(programs
-        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
-        .collect())
+    programs
+        .filter_map(|path| Some((path.file_stem()?.to_str()?.to_owned(), path)))
+        .map(|(name, path)| Ok((name, bytes(&path)?)))
+        .collect()
+}
+
+/// The bytes of a file, or of all files in a folder.
+fn bytes(path: &Path) -> Result<u64, String> {
+    if path.is_dir() {
+        return entries(path)?.iter().map(|path| bytes(path)).sum();
+    }
+    fs::metadata(path)
+        .map(|metadata| metadata.len())
+        .map_err(|e| format!("{} can't be read: {e}.", path.display()))
 }
 
 fn entries(folder: &Path) -> Result<Vec<std::path::PathBuf>, String> {
@@ -64,6 +84,12 @@ mod tests {
             assert!(found.others.contains(&name.to_owned()), "{name}");
         }
         assert!(found.others.iter().all(|name| !found.of_window.contains(name)));
+        let place = |name: &str| found.others.iter().position(|other| other == name).unwrap();
+        assert!(
+            place("window") < place("atomic"),
+            "the longest first: {:?}",
+            found.others
+        );
         assert!(
             !found.others.contains(&"desktop".to_owned()),
             "no program, but a module of some"

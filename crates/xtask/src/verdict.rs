@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
+use std::sync::Mutex;
 use std::time::Instant;
 
 use crate::process;
@@ -61,28 +62,43 @@ impl Verdict {
         self.record_tests(name, result, started, failures);
     }
 
-    /// Runs two `cargo test` commands at the same time. The lines of the second one are shown and counted after those of
-    /// the first one.
-    pub fn tests_beside(&mut self, (name, first): (&str, &mut Command), (beside, second): (&str, &mut Command)) {
-        let (started, words) = (Instant::now(), process::words(second));
-        let second = std::thread::scope(|scope| {
-            let second = scope.spawn(|| second.stdin(Stdio::null()).output());
-            self.tests(name, first);
-            second.join()
-        });
-        println!("\n── {beside}: {words}");
-        let failures = self.failures.len();
-        let result = match second {
-            Ok(Ok(output)) => {
-                eprint!("{}", String::from_utf8_lossy(&output.stderr));
-                self.show(&output.stdout[..])
-                    .map_err(|e| format!("The output of `{words}` can't be shown: {e}."))
-                    .and_then(|()| succeeded(&words, output.status))
+    /// Runs named `cargo test` commands in their order, `at_once` of them at a time. The lines of each are shown and
+    /// counted when it has ended.
+    pub fn tests_at_once(&mut self, commands: Vec<(String, Command)>, at_once: usize) {
+        let queue = Mutex::new(commands.into_iter());
+        let (ended, outputs) = std::sync::mpsc::channel();
+        std::thread::scope(|scope| {
+            for _ in 0..at_once {
+                let (ended, queue) = (ended.clone(), &queue);
+                scope.spawn(move || {
+                    // A queue whose lock is poisoned has no more tests; what panicked is reported by the scope.
+                    while let Some((name, mut command)) = queue.lock().ok().and_then(|mut queue| queue.next()) {
+                        let started = Instant::now();
+                        let output = command.stdin(Stdio::null()).output();
+                        if ended.send((name, process::words(&command), output, started)).is_err() {
+                            return;
+                        }
+                    }
+                });
             }
-            Ok(Err(e)) => Err(format!("`{words}` can't be run: {e}.")),
-            Err(_) => Err(format!("`{words}` was not waited for.")),
-        };
-        self.record_tests(beside, result, started, failures);
+            drop(ended);
+            for (name, words, output, started) in outputs {
+                println!("\n── {name}: {words}");
+                let failures = self.failures.len();
+                let result = output
+                    .map_err(|e| format!("`{words}` can't be run: {e}."))
+                    .and_then(|output| self.show_output(&words, &output));
+                self.record_tests(&name, result, started, failures);
+            }
+        });
+    }
+
+    /// Shows and counts all that an ended command wrote.
+    fn show_output(&mut self, words: &str, output: &Output) -> Result<(), String> {
+        eprint!("{}", String::from_utf8_lossy(&output.stderr));
+        self.show(&output.stdout[..])
+            .map_err(|e| format!("The output of `{words}` can't be shown: {e}."))?;
+        succeeded(words, output.status)
     }
 
     /// Counts a `cargo test` command as a step. `failures` is the number of failures before it.
@@ -301,5 +317,21 @@ mod tests {
         verdict.step("absent", &mut Command::new("no-such-program-of-ours"));
         assert_eq!(verdict.failures, ["bad", "absent"]);
         assert_eq!(verdict.passed, 1);
+    }
+    #[test]
+    fn every_command_of_a_queue_runs_once_and_counts() {
+        for at_once in [1, 2, 9] {
+            let mut verdict = Verdict::default();
+            let programs = ["true", "false", "no-such-program-of-ours", "true"];
+            let commands = programs.map(|program| (program.to_owned(), Command::new(program)));
+            verdict.tests_at_once(commands.into(), at_once);
+            verdict.failures.sort();
+            assert_eq!(
+                verdict.failures,
+                ["false", "no-such-program-of-ours"],
+                "{at_once} at once"
+            );
+            assert_eq!((verdict.passed, verdict.steps.len()), (2, 4), "{at_once} at once");
+        }
     }
 }

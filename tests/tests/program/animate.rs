@@ -5,10 +5,12 @@ use std::fs;
 use std::path::Path;
 
 use glam::DVec3;
+use pliant_editor::Beginning;
 use pliant_engine::files::Staging;
 use pliant_engine::watch::Watch;
 use pliant_engine::{
     Animate, EditJob, EngineError, ExistingFrames, MORPH_TOLERANCE, animate as animate_files, memory, read_edit,
+    stage_animation,
 };
 use pliant_mesh::{Cancel, Drawn, shapes};
 use pliant_tests::morphs::Glb;
@@ -52,6 +54,25 @@ fn keys() -> Value {
         { "time": 0.25, "handles": { "top": lifted() } },
         { "time": 0.5, "ease": "hold", "handles": { "top": bent() } },
     ])
+}
+
+/// The animation of an edit, by the engine itself.
+fn animation<'a>(file: &'a Path, (edit, edit_path): (&'a Beginning, &'a Path), output: &'a Path) -> Animate<'a> {
+    Animate {
+        job: EditJob {
+            file,
+            edit,
+            edit_path,
+            output,
+            report: None,
+            weld: None,
+            budget: memory::budget(),
+        },
+        name: "f",
+        tolerance: MORPH_TOLERANCE,
+        fps: 8.0,
+        frames: ExistingFrames::Keep,
+    }
 }
 
 fn animate(folder: &Folder, edit: &Value, out: &str, more: &[&str]) -> Ended {
@@ -286,6 +307,14 @@ fn numbered_files_replace_others_only_on_request() {
     animate(&folder, &edit, "f-####.off", &["--fps", "8", "--replace"]).done();
     assert_ne!(fs::read(folder.at("f-0003.off")).unwrap(), b"somebody's");
     animate(&folder, &edit, "f-####.off", &["--fps", "8"]).refused(2, &["5 numbered files,", "f-0000.off"]);
+    // Those of a longer animation stay, and are named.
+    let shorter = animate(&folder, &edit, "f-####.off", &["--fps", "4", "--replace"]).done();
+    assert!(
+        shorter.err.contains("2 files from f-0003.off to f-0004.off"),
+        "{}",
+        shorter.err
+    );
+    assert!(folder.at("f-0004.off").exists());
 }
 
 #[test]
@@ -296,21 +325,7 @@ fn an_animation_that_is_stopped_anywhere_leaves_the_folder_as_it_was() {
         let edit_at = folder.write("edit.json", edit("bilaplacian", &json!({}), &keys()).to_string());
         let edit = read_edit(&edit_at, &Watch::default()).unwrap();
         let output = folder.at(out);
-        let animation = Animate {
-            job: EditJob {
-                file: &file,
-                edit: &edit,
-                edit_path: &edit_at,
-                output: &output,
-                report: None,
-                weld: None,
-                budget: memory::budget(),
-            },
-            name: "f",
-            tolerance: MORPH_TOLERANCE,
-            fps: 8.0,
-            frames: ExistingFrames::Keep,
-        };
+        let animation = animation(&file, (&edit, &edit_at), &output);
         let mut stops = 0;
         for looks in (0..100).map(|step| step + step * step / 2) {
             let watch = Watch::cancelled_by(&Cancel::after_looks(looks));
@@ -323,6 +338,42 @@ fn an_animation_that_is_stopped_anywhere_leaves_the_folder_as_it_was() {
         }
         assert!((3..100).contains(&stops), "{out}: {stops}");
         assert!(folder.names().len() > 2, "{out}");
+    }
+}
+
+#[test]
+fn kept_dye_is_in_every_frame_and_in_a_gltf_and_named_where_it_can_not_be() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &bar());
+    let edit_at = folder.write("edit.json", edit("bilaplacian", &json!({}), &keys()).to_string());
+    let edit = read_edit(&edit_at, &Watch::default()).unwrap();
+    let Beginning::Edit(with_keys) = &edit else { panic!() };
+    let loaded = open(&file);
+    let heights = loaded.model.surface.positions.iter().map(|at| at.z);
+    let red = |height: f64| if height < 1.0 { [1.0, 0.0, 0.0, 1.0] } else { [0.0; 4] };
+    let dye: Vec<[f32; 4]> = heights.map(red).collect();
+    for (out, written) in [
+        ("f-#.off", Some("f-1.off")),
+        ("f.glb", Some("f.glb")),
+        ("g-#.glb", Some("g-0.glb")),
+        ("f-#.stl", None),
+    ] {
+        let output = folder.at(out);
+        let animation = animation(&file, (&edit, &edit_at), &output);
+        let (watch, staging) = (Watch::default(), Staging::default());
+        let animated = stage_animation(&animation, &loaded, (with_keys, Some(&dye)), &watch, &staging).unwrap();
+        let said = animated.report.warnings.join(" ");
+        animated.staged.commit().unwrap();
+        assert_eq!(
+            said.contains("kept dye is not in it"),
+            written.is_none(),
+            "{out}: {said}"
+        );
+        let Some(written) = written else { continue };
+        let colours = open(&folder.at(written)).scene.appearance().colours.unwrap();
+        let is_red = |colour: &&[u16; 4]| colour[0] == u16::MAX && colour[1] == 0;
+        let red = colours.iter().filter(is_red).count();
+        assert!((1..colours.len()).contains(&red), "{out}: {red} of {}", colours.len());
     }
 }
 

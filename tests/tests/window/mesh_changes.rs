@@ -211,7 +211,7 @@ fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
     let words = |words: &[&str]| words.iter().map(|word| OsString::from(*word)).collect::<Vec<_>>();
     let cut = |side, keep| {
         let command = words(&["cut", "--plane", "0.3,1,-0.2,0.25", "--keep", keep]);
-        (MeshChange::Cut(plane, side), command)
+        (MeshChange::Cut(plane, side, Vec::new()), command)
     };
     let cases = [
         cut(KeptSide::Positive, "positive"),
@@ -250,7 +250,7 @@ fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
     };
     command(
         &mut session,
-        Command::ChangeMesh(MeshChange::Cut(beside, KeptSide::Both)),
+        Command::ChangeMesh(MeshChange::Cut(beside, KeptSide::Both, Vec::new())),
     );
     let problem = session
         .harness
@@ -364,6 +364,43 @@ fn two_halves_are_appended_and_merged_to_the_shape_that_they_were_cut_from() {
         command(&mut session, Command::Redo);
         assert!(Arc::ptr_eq(&model(&session), &merged));
     }
+}
+
+#[test]
+fn an_appended_part_is_cut_alone_by_a_drag_and_merged() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bowl.off", &used(&bowl()));
+    let Some(mut session) = begin(&file) else { return };
+    let count = model(&session).surface.positions.len();
+    append(&mut session, &file);
+    command(&mut session, Command::FrameAll);
+    command(&mut session, Command::CutAlongLine(KeptSide::Positive));
+    let [left, right] = [f64::min, f64::max].map(|end: fn(f64, f64) -> f64| {
+        session.point_of(|positions| {
+            let x = positions.iter().map(|at| at.x).reduce(end).unwrap();
+            DVec3::new(x, 0.0, 0.0)
+        })
+    });
+    session.stroke(left, right);
+    session.settle();
+    let editor = session.harness.state().editor();
+    assert_eq!(editor.view().problem, None);
+    let (now, document) = (model(&session), editor.document());
+    let held: Vec<DVec3> = document
+        .paint()
+        .iter()
+        .zip(&now.surface.positions)
+        .filter(|(paint, _)| matches!(paint, Paint::Handle(_)))
+        .map(|(_, at)| *at)
+        .collect();
+    let all = now.surface.positions.len();
+    assert_eq!(all - held.len(), count, "the open file's own part stays whole");
+    assert!(held.len() < 3 * count / 4, "the appended one is cut");
+    let middle = held.iter().sum::<DVec3>() / held.len() as f64;
+    assert!(document.handles()[0].pivot.distance(middle) < 1e-9);
+    command(&mut session, Command::Merge);
+    assert_eq!(session.harness.state().editor().view().problem, None);
+    assert_eq!(model(&session).topology.components().len(), 1);
 }
 
 #[test]

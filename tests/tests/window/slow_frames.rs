@@ -7,11 +7,15 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use std::fs;
+
+use crate::disk::{await_words, edit, open};
 use crate::window_rig::Session;
 use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use pliant_editor::ToolMode;
+use pliant_tests::Folder;
 
 /// Presses and releases a key that types a text.
 fn typed(key: Key, text: &str) -> Vec<Event> {
@@ -97,4 +101,27 @@ fn a_click_and_what_is_typed_into_the_palette_after_it_may_come_in_one_frame() {
     );
     let field = session.harness.get_by_label("Command");
     assert_eq!(field.value().as_deref(), Some("wi"), "and the letters for the palette");
+}
+
+#[test]
+fn a_name_and_enter_after_it_may_come_in_one_frame_even_before_the_folder_is_read() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3));
+    let before = fs::read(&file).unwrap();
+    let Some(mut session) = open(&file) else { return };
+    edit(&mut session);
+    for (name, is_read) in [("r", true), ("a", false)] {
+        session.key(Key::S, Modifiers::COMMAND | Modifiers::SHIFT);
+        // There is no dialog of the system here, so the window shows its own.
+        await_words(&mut session, "Save the model as");
+        if is_read {
+            await_words(&mut session, ".off");
+        }
+        let key = Key::from_name(&name.to_uppercase()).unwrap();
+        session.in_one_frame([typed(key, name), typed(Key::Enter, "")].concat());
+        session.settle();
+        let saved = folder.at(&format!("{name}.off"));
+        assert!(saved.is_file(), "{name}");
+        assert_eq!(fs::read(&file).unwrap(), before, "the suggested name is not the answer");
+    }
 }

@@ -186,12 +186,16 @@ fn the_animation_is_exported_as_the_command_line_writes_it() {
     animate(&animation, &Watch::default(), &Staging::default()).unwrap();
     assert!(std::fs::read(&written).unwrap() == bytes);
     // A refusal is a sentence and leaves nothing.
-    let wrong = folder.at("wave.stl");
+    let wrong = folder.at("wave.txt");
     session.harness.state_mut().export_animation(&wrong);
     session.settle();
     let said = session.harness.state().headline().unwrap_or_default().to_owned();
-    assert!(said.contains("-####"), "{said}");
+    assert!(said.contains(".txt"), "{said}");
     assert!(!wrong.exists());
+    // A format with one shape in a file gets a file for each frame.
+    session.harness.state_mut().export_animation(&folder.at("wave.stl"));
+    session.settle();
+    assert!(folder.at("wave-0000.stl").exists() && !folder.at("wave.stl").exists());
 }
 
 #[test]

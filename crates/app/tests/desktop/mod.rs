@@ -22,6 +22,15 @@ pub const PAUSE: Duration = Duration::from_millis(250);
 /// The time limit of any action on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
+/// A copy of the sample in a folder. The project's own one stays out of reach: on a busy machine an answer may come too
+/// late for its question, and Enter then saves over the open file.
+pub fn sample_in(folder: &Path) -> PathBuf {
+    let copy = folder.join("bar.glb");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/bar.glb");
+    std::fs::copy(own, &copy).unwrap();
+    copy
+}
+
 /// A process that ends with its owner.
 pub struct Running(Child);
 

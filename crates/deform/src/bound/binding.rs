@@ -15,7 +15,7 @@ use crate::method::BindInput;
 use crate::region::follow::followers;
 use crate::rigid::Softened;
 use crate::sparse::refactorisation::Refactorisation;
-use crate::{BindError, Budget, HandleFit, Ordering, Problem, ReusableFactor, Warning};
+use crate::{BindError, Budget, HandleFit, Needs, Ordering, Problem, ReusableFactor, Warning};
 
 impl Problem<'_> {
     /// Factors and solves everything that does not depend on the handles' transforms.
@@ -216,6 +216,10 @@ impl Bound {
             method: declaration.name,
             followed,
             is_held: partition.held.contains(&true),
+            bends: match implementation.needs() {
+                Needs::Points => vec![true; handles.len()],
+                Needs::Surface { .. } => partition.handles_that_bend(&boundary),
+            },
         });
         let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
         let world_rest = handles.iter().filter(|_| takes_places).map(rest).collect();

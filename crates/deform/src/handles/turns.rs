@@ -62,12 +62,14 @@ impl Followed {
 const NARROWS_NECKS: &str = "narrows the limb at thin places";
 
 /// The limit of a method, and its name.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub(crate) struct TurnLimit {
     pub method: &'static str,
     pub followed: Followed,
     /// True if something is fixed.
     pub is_held: bool,
+    /// For each handle, false if it holds parts of the surface as a whole, so that no limb ends at it.
+    pub bends: Vec<bool>,
 }
 
 /// The warning waits for this much more than the limit, so that a turn by the limit itself gives none.
@@ -89,7 +91,7 @@ impl TurnLimit {
         let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
         let own = handles.iter().zip(motions).enumerate();
         let turns: Vec<(usize, DQuat)> = own
-            .filter(|(number, _)| counted[*number])
+            .filter(|(number, _)| counted[*number] && self.bends[*number])
             .map(|(number, own)| (number, DQuat::from_scaled_axis(turn(own))))
             .collect();
         let fixed = self.is_held.then_some((usize::MAX, DQuat::IDENTITY));
@@ -116,7 +118,7 @@ impl TurnLimit {
             Warning::of_handle(number, |handle| {
                 format!(
                     "{handle} turns by {degrees:.0}° against the other end of its region. From about \
-                     {most_degrees:.0}° on, {} {beyond}: take {others}, or turn it in parts",
+                     {most_degrees:.0}° on, `{}` {beyond}: take {others}, or turn it in parts",
                     self.method
                 )
             })

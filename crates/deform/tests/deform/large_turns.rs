@@ -28,6 +28,24 @@ fn said(method: &Method, degrees: f64, fixed: bool) -> Vec<String> {
     bound.warnings().iter().filter(about).map(ToString::to_string).collect()
 }
 
+#[test]
+fn a_handle_that_holds_a_whole_part_has_no_limb_that_could_narrow() {
+    let limb = shapes::tube(10, 16, 5.0);
+    let beside = shapes::moved(&limb, DAffine3::from_translation(4.0 * DVec3::X));
+    for whole in [false, true] {
+        let mut scene = Scene::new(shapes::together(&[limb.clone(), beside.clone()]))
+            .with(Role::Fixed, |p| p.x < 2.0 || (!whole && p.z < 0.5))
+            .with(Role::Handle(0), |p| p.x > 2.0 && (whole || p.z > 4.5));
+        for name in ["arap", "bilaplacian", "shells"] {
+            scene.method = named(name);
+            let mut bound = scene.bind();
+            bound.set_targets(&turn_about_limb(175.0)).unwrap();
+            let warns = bound.warnings().iter().any(|said| said.contains("turns by"));
+            assert_eq!(warns, !whole, "{name}");
+        }
+    }
+}
+
 /// A limb with a neck of this share of its radius, fixed at one end and with a handle at the other.
 fn limb(method: &Method, neck: f64) -> Scene {
     let mut drawn = shapes::tube(16, 40, 5.0);

@@ -4,6 +4,7 @@ mod access;
 mod animation;
 mod carried_examples;
 mod content;
+mod continuation;
 mod fluid;
 mod handle;
 mod handle_colour;

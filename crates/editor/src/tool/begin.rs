@@ -43,7 +43,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
                 && let Some(kept) = context.settings.wants_cut =>
         {
             context.workspace.refusal = None;
-            return Some(Box::new(CutLine::begin(pointer, kept)));
+            return Some(Box::new(CutLine::begin(context.workspace, pointer, kept)));
         }
         Button::Primary
             if !modifiers.alt

@@ -8,7 +8,7 @@ use super::overlay::Lit;
 use crate::input::{Button, Pointer};
 use crate::stitching::{CutPlane, KeptSide, MeshChange};
 use crate::view::{Cursor, View};
-use crate::workspace::{Workspace, stitch};
+use crate::workspace::{Workspace, held_parts, spared_by_cuts, stitch};
 
 /// A shorter line, in points, has no sure direction.
 const SHORTEST_PX: f64 = 8.0;
@@ -22,15 +22,36 @@ pub(crate) struct CutLine {
     to_px: DVec2,
     /// The positive side is to the left of the line, seen along it.
     kept: KeptSide,
+    /// True while Shift is held: the other side is kept.
+    is_turned: bool,
+    /// The name of the handle whose part alone is cut.
+    only: Option<String>,
 }
 
 impl CutLine {
-    pub(super) fn begin(pointer: Pointer, kept: KeptSide) -> Self {
+    pub(super) fn begin(workspace: &Workspace, pointer: Pointer, kept: KeptSide) -> Self {
+        let holds_part = !held_parts(workspace).is_empty();
+        let only = workspace.selected().filter(|_| holds_part);
         Self {
             from_px: pointer.position_px,
             to_px: pointer.position_px,
             kept,
+            is_turned: pointer.modifiers.shift,
+            only: only.map(|handle| handle.name.clone()),
         }
+    }
+
+    fn kept(&self) -> KeptSide {
+        match (self.kept, self.is_turned) {
+            (KeptSide::Positive, true) => KeptSide::Negative,
+            (KeptSide::Negative, true) => KeptSide::Positive,
+            (kept, _) => kept,
+        }
+    }
+
+    fn follow(&mut self, pointer: Pointer) {
+        self.to_px = pointer.position_px;
+        self.is_turned = pointer.modifiers.shift;
     }
 
     /// The plane through the line and the eye; its normal points to the left of the line.
@@ -57,7 +78,14 @@ impl Gesture for CutLine {
     }
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
-        Some(format!("{}: release to cut, Esc to cancel", effect(self.kept)))
+        let only = self.only.as_ref().map(|name| format!("Only {name} is cut. "));
+        let only = only.unwrap_or_default();
+        let turn = match self.kept {
+            KeptSide::Both => "",
+            KeptSide::Positive | KeptSide::Negative => ", Shift for the other side",
+        };
+        let effect = effect(self.kept());
+        Some(format!("{only}{effect}: release to cut{turn}, Esc to cancel"))
     }
 
     /// The line, and marks on the side that is deleted.
@@ -65,7 +93,7 @@ impl Gesture for CutLine {
         let along = self.to_px - self.from_px;
         let left = DVec2::new(along.y, -along.x).normalize_or_zero();
         let mark = MARK_PX
-            * match self.kept {
+            * match self.kept() {
                 KeptSide::Positive => -left,
                 KeptSide::Negative => left,
                 KeptSide::Both => DVec2::ZERO,
@@ -77,7 +105,7 @@ impl Gesture for CutLine {
     }
 
     fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.to_px = pointer.position_px;
+        self.follow(pointer);
         Next::Stay
     }
 
@@ -85,12 +113,19 @@ impl Gesture for CutLine {
         if button != Button::Primary {
             return Next::Stay;
         }
-        self.to_px = pointer.position_px;
+        self.follow(pointer);
         if self.from_px.distance(self.to_px) < SHORTEST_PX {
             return Next::End;
         }
         context.settings.wants_cut = None;
-        let change = MeshChange::Cut(self.plane(context.view), self.kept);
+        let spared = spared_by_cuts(context.workspace);
+        if spared.len() == context.workspace.document.paint().len() {
+            context
+                .workspace
+                .refuse("Every part is hidden or locked: show or unlock the one to cut.");
+            return Next::End;
+        }
+        let change = MeshChange::Cut(self.plane(context.view), self.kept(), spared);
         stitch(context.workspace, change);
         Next::End
     }

@@ -72,14 +72,26 @@ const FADED: f64 = 0.4;
 impl Overlay {
     /// The part of the gizmo that a press at a point of the viewport grabs.
     pub(crate) fn grabbed(&self, position_px: DVec2, view: &View, settings: &ToolSettings) -> Option<GizmoPart> {
-        let part = hit_gizmo(&self.gizmo, position_px, view.camera(), view.viewport_px());
+        let part = self.hit(&self.gizmo, position_px, view);
         part.filter(|part| settings.mode == ToolMode::Select || self.rested == Some(*part))
+    }
+
+    /// The part of this gizmo under a point of the viewport. The square of a control point that is not selected is
+    /// before it, so that a curve's neighbouring points can be taken through the gizmo of one.
+    fn hit(&self, gizmo: &[GizmoShape], position_px: DVec2, view: &View) -> Option<GizmoPart> {
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let others = self.control_points.iter().filter(|point| !point.is_selected);
+        let mut covering = others.filter(|point| point.covers(position_px, camera, viewport_px));
+        match covering.next() {
+            Some(_) => None,
+            None => hit_gizmo(gizmo, position_px, camera, viewport_px),
+        }
     }
 
     /// The pointer rests at a point of the viewport. Squares and the centre cover vertices of the next stroke, so a
     /// rest counts only on lines.
     pub(crate) fn rest(&mut self, pointer_px: Option<DVec2>, view: &View) {
-        let part = pointer_px.and_then(|px| hit_gizmo(&self.gizmo, px, view.camera(), view.viewport_px()));
+        let part = pointer_px.and_then(|px| self.hit(&self.gizmo, px, view));
         self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
@@ -96,8 +108,9 @@ impl Overlay {
         let pointer_px = pointer.map(|pointer| pointer.position_px);
         let gizmo_of = |part| gizmo(lit, workspace, camera, viewport_px, settings, part).unwrap_or_default();
         let mut gizmo = gizmo_of(None);
+        let lines = self.place_controls(workspace, view);
         let highlighted = match (lit, pointer_px) {
-            (Lit::Pointed, Some(pointer_px)) => hit_gizmo(&gizmo, pointer_px, camera, viewport_px),
+            (Lit::Pointed, Some(pointer_px)) if !settings.waits_for_press() => self.hit(&gizmo, pointer_px, view),
             (Lit::Gizmo(part), _) => part,
             _ => None,
         };
@@ -141,7 +154,7 @@ impl Overlay {
         // Points of a drawn curve lie on the surface.
         let is_in_front = settings.mode == ToolMode::Select || settings.draws_curves() || !is_over_surface;
         let control_px = pointer_px.filter(|_| takes_points && is_in_front);
-        let controls = self.renew_controls(workspace, view, control_px);
+        let controls = self.draw_controls(lines, control_px, view);
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
         let rim_px = pointer_px.filter(|_| lit == Lit::Pointed);
@@ -170,15 +183,11 @@ impl Overlay {
         self.rims.shapes(workspace, view, wanted, self.rim.as_ref())
     }
 
-    /// The visible control points, and their shapes; `pointer_px` is the pointer's place if it may take one.
-    fn renew_controls(&mut self, workspace: &Workspace, view: &View, pointer_px: Option<DVec2>) -> Vec<ControlShape> {
-        self.pointed_control = None;
+    /// Finds the visible control points; returns the lines between them, and whether they are a curve's.
+    fn place_controls(&mut self, workspace: &Workspace, view: &View) -> Option<(Vec<[DVec3; 2]>, bool)> {
         self.control_points.clear();
-        let Some(shown) = workspace.shown_controls() else {
-            return Vec::new();
-        };
+        let shown = workspace.shown_controls()?;
         self.hidden.look(&shown.positions, workspace, view);
-        let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let pinned = match &shown.source {
             ControlSource::Curve(_, curve, _) => curve.pinned(),
             ControlSource::Attachment(..) => &[],
@@ -192,13 +201,26 @@ impl Overlay {
                 is_pinned: pinned.contains(&number),
                 is_pointed_at: false,
             }));
+        let is_curve = matches!(shown.source, ControlSource::Curve(..));
+        Some((shown.lines, is_curve))
+    }
+
+    /// The shapes of the control points with their lines; `pointer_px` is the pointer's place if it may take a point.
+    fn draw_controls(
+        &mut self,
+        lines: Option<(Vec<[DVec3; 2]>, bool)>,
+        pointer_px: Option<DVec2>,
+        view: &View,
+    ) -> Vec<ControlShape> {
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let near = |px| control_at(&self.control_points, px, camera, viewport_px);
         self.pointed_control = pointer_px.and_then(near);
         if let Some(point) = self.pointed_control {
             self.control_points[point as usize].is_pointed_at = true;
         }
-        let is_curve = matches!(shown.source, ControlSource::Curve(..));
-        control_shapes(&self.control_points, shown.lines, is_curve, camera, viewport_px)
+        let drawn =
+            lines.map(|(lines, is_curve)| control_shapes(&self.control_points, lines, is_curve, camera, viewport_px));
+        drawn.unwrap_or_default()
     }
 }
 

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use crate::view::{ControlShape, View};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, held_parts};
 
 /// The use of the rim that the next click takes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -68,6 +68,10 @@ const OTHERS: [u8; 4] = [255, 150, 40, 130];
 pub(super) struct Rims {
     of: Option<Arc<Model>>,
     loops: Vec<Vec<SurfaceVertex>>,
+    /// The use for which `offered` was found.
+    wanted: Option<RimUse>,
+    /// For each rim, whether a click may take it.
+    offered: Vec<bool>,
 }
 
 impl Rims {
@@ -82,14 +86,36 @@ impl Rims {
             self.loops = model.map_or_else(Vec::new, |model| model.topology.boundary_loops());
             self.of = model.cloned();
         }
+        if !is_same || self.wanted != wanted {
+            self.wanted = wanted;
+            self.offered = match wanted.zip(model) {
+                Some((wanted, model)) => self.offered(workspace, wanted, model),
+                None => Vec::new(),
+            };
+        }
     }
 
-    /// The rim nearest to the pointer, if it is near; of visible ones and hidden ones a visible one.
+    /// A second rim is another one than the first; for a merge, it is on the other side.
+    fn offered(&self, workspace: &Workspace, wanted: RimUse, model: &Model) -> Vec<bool> {
+        let Some(first) = wanted.first() else {
+            return vec![true; self.loops.len()];
+        };
+        let held = held_parts(workspace);
+        let is_held = |vertex: SurfaceVertex| held.contains(&model.topology.component(vertex));
+        let may_follow = |rim: &Vec<SurfaceVertex>| match wanted {
+            RimUse::Merge { .. } => rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first)),
+            RimUse::Bridge { .. } | RimUse::Fill => !rim.contains(&first),
+        };
+        self.loops.iter().map(may_follow).collect()
+    }
+
+    /// The rim nearest to the pointer that a click may take, if it is near; of visible ones and hidden ones a visible one.
     pub(super) fn pointed(&self, workspace: &Workspace, view: &View, pointer_px: DVec2) -> Option<PointedRim> {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let px_of = |vertex| camera.project(workspace.position(vertex), viewport_px);
         let mut near: Vec<(f64, usize, SurfaceVertex)> = Vec::new();
-        for (number, vertices) in self.loops.iter().enumerate() {
+        let loops = self.loops.iter().enumerate();
+        for (number, vertices) in loops.filter(|(number, _)| self.offered[*number]) {
             let far = |&vertex| Some((px_of(vertex)?.distance(pointer_px), number, vertex));
             let nearest = vertices.iter().filter_map(far).min_by(|a, b| a.0.total_cmp(&b.0));
             near.extend(nearest.filter(|(px, ..)| *px <= NEAR_PX));

@@ -56,6 +56,14 @@ pub(crate) struct ShownPoint {
     pub(crate) is_pointed_at: bool,
 }
 
+impl ShownPoint {
+    /// Returns true if its square covers a point of the viewport.
+    pub(crate) fn covers(&self, position_px: DVec2, camera: &Camera, viewport_px: DVec2) -> bool {
+        let at_px = camera.project(self.position, viewport_px);
+        at_px.is_some_and(|at_px| (at_px - position_px).abs().max_element() <= 1.4 * HALF_PX + RIM_PX)
+    }
+}
+
 /// Blue, orange and near-black are distinct from clay, from each other and from both themes' grounds.
 const EDGE: [u8; 4] = [58, 128, 220, 220];
 const CURVE: [u8; 4] = [255, 214, 110, 255];

@@ -114,6 +114,23 @@ pub(crate) fn held_parts(workspace: &Workspace) -> BTreeSet<u32> {
     held.difference(&others).copied().collect()
 }
 
+/// The vertices that a cut along a plane spares: those of parts that are hidden or locked as a whole, and all others
+/// than the parts that the selected handle holds, if it holds any.
+pub(crate) fn spared_by_cuts(workspace: &Workspace) -> Vec<SurfaceVertex> {
+    let Some(model) = workspace.model() else {
+        return Vec::new();
+    };
+    let (held, access) = (held_parts(workspace), &workspace.vertex_access);
+    let parts = 0..model.topology.components().len() as u32;
+    let is_spared = |part: &u32| {
+        let is_another = !held.is_empty() && !held.contains(part);
+        let mut vertices = model.topology.vertices_of(*part);
+        is_another || !vertices.any(|vertex| access.may_be_painted(vertex.index()))
+    };
+    let spared = parts.filter(is_spared);
+    spared.flat_map(|part| model.topology.vertices_of(part)).collect()
+}
+
 /// Joins the parts that the selected handle holds to the others, at these pairs of vertices or at the nearest borders.
 /// Each pair has a vertex of either side, in any order.
 pub(crate) fn merge_held(workspace: &mut Workspace, pairs: &[[SurfaceVertex; 2]], settings: MergeSettings) {

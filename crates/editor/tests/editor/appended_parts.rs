@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_editor::{Command, Event, MergeSettings, MeshChange, Paint, Placement, REACH_RANGE};
-use pliant_mesh::SurfaceVertex;
+use glam::{DAffine3, DVec2, DVec3};
+use pliant_editor::{
+    Command, Event, KeptSide, MergeSettings, MeshChange, ObjectAction, Paint, Placement, REACH_RANGE, RimUse,
+};
+use pliant_mesh::{Object, SurfaceVertex, shapes};
 
-use crate::rig::new_mesh::{answer, bowl, state, used};
-use crate::rig::{Rig, VIEWPORT_PX};
+use crate::rig::new_mesh::{answer, answer_with, bowl, state, used};
+use crate::rig::{Rig, VIEWPORT_PX, weld};
 
 /// A bowl with another one appended, whose handle is selected.
 fn appended() -> Rig {
@@ -142,6 +144,82 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
         rig.release(at);
     }
     assert!(rig.editor.take_stitch().is_none());
-    let problem = rig.editor.view().problem.unwrap_or_default().to_owned();
-    assert!(problem.contains("on one side"), "{problem}");
+    let wanted = rig.editor.view().wants_rim;
+    let still = matches!(wanted, Some(RimUse::Merge { first: Some(_) }));
+    assert!(still, "only a border on the other side is the second: {wanted:?}");
+}
+
+#[test]
+fn a_closed_part_that_faces_inwards_is_turned_when_it_is_appended() {
+    for faces_inwards in [false, true] {
+        let mut rig = Rig::open(bowl());
+        rig.command(Command::ChangeMesh(MeshChange::Append("ball".to_owned())));
+        let mut ball = shapes::moved(&shapes::icosphere(2), DAffine3::from_translation(DVec3::X * 3.0));
+        if faces_inwards {
+            ball.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+        let whole = shapes::together(&[bowl(), ball]);
+        answer_with(&mut rig, |_| (*weld(whole)).clone());
+        let document = rig.editor.document();
+        let is_held = |paint: &Paint| *paint == Paint::Handle(document.handles()[0].id);
+        let held = document.paint().iter().position(is_held).unwrap() as u32;
+        let part = rig.model.topology.component(SurfaceVertex(held));
+        let turned: Vec<u32> = document.inside_out().iter().copied().collect();
+        assert_eq!(turned, if faces_inwards { vec![part] } else { vec![] });
+    }
+}
+
+/// The vertices that a cut along a line across the whole view spares, and the sentence that comes with the line.
+fn spared(rig: &mut Rig) -> (Vec<SurfaceVertex>, String) {
+    rig.command(Command::FrameAll);
+    rig.drain();
+    rig.command(Command::CutAlongLine(KeptSide::Positive));
+    rig.press(DVec2::new(5.0, 290.0));
+    rig.move_to(DVec2::new(790.0, 310.0));
+    let said = rig.editor.view().status.clone();
+    rig.release(DVec2::new(790.0, 310.0));
+    let request = rig.editor.take_stitch().unwrap();
+    rig.send(Event::Stitched(Err("not now".to_owned())));
+    match request.change {
+        MeshChange::Cut(_, _, spared) => (spared, said),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_line_cuts_the_part_of_the_selected_handle_alone_and_no_hidden_or_locked_one() {
+    let mut rig = appended();
+    let count = used(bowl()).positions.len() as u32;
+    let [first, second] = [0..count, count..2 * count].map(|of| of.map(SurfaceVertex).collect::<Vec<_>>());
+    let (whole, said) = spared(&mut rig);
+    assert!(whole == first && said.contains("Only lid is cut"), "{said}");
+    rig.command(Command::Deselect);
+    assert!(spared(&mut rig).0.is_empty(), "without a selected part, all are cut");
+
+    let triangles = bowl().triangles.len() as u32;
+    let object = |triangles| Object {
+        triangles: vec![triangles],
+        ..Object::default()
+    };
+    let objects = vec![object(0..triangles), object(triangles..2 * triangles)];
+    let two = || {
+        shapes::together(&[
+            used(bowl()),
+            shapes::moved(&used(bowl()), DAffine3::from_translation(DVec3::X * 2.2)),
+        ])
+    };
+    for action in [ObjectAction::Hide, ObjectAction::Lock] {
+        let mut rig = Rig::open_with_objects(two(), objects.clone());
+        rig.command(Command::Objects(action, vec![1]));
+        rig.drain();
+        assert!(spared(&mut rig).0 == second, "{action:?}");
+        rig.command(Command::Objects(action, vec![0]));
+        rig.drain();
+        rig.command(Command::CutAlongLine(KeptSide::Positive));
+        rig.press(DVec2::new(5.0, 290.0));
+        rig.release(DVec2::new(790.0, 310.0));
+        assert!(rig.editor.take_stitch().is_none());
+        let problem = rig.editor.view().problem.unwrap_or_default().to_owned();
+        assert!(problem.contains("hidden or locked"), "{action:?}: {problem}");
+    }
 }

@@ -122,6 +122,39 @@ fn once_the_cage_is_the_documents_moving_its_points_binds_nothing_anew() {
     assert!(rig.largest_displacement() > 1e-3, "{}", rig.largest_displacement());
 }
 
+/// A point that the gizmo of another one covers can still be taken.
+#[test]
+fn the_square_of_another_point_is_before_the_gizmo() {
+    let mut rig = ball("lattice");
+    let points = points_px(&rig);
+    let mut covered = 0;
+    for first in points.iter().step_by(5) {
+        rig.command(Command::DeselectControls);
+        rig.swipe(&[*first]);
+        let view = rig.editor.view();
+        let is_under = |px: &DVec2| pliant_editor::hit_gizmo(view.gizmo, *px, view.camera, VIEWPORT_PX).is_some();
+        let others = points.iter().filter(|px| px.distance(*first) > 20.0);
+        let under: Vec<DVec2> = others.copied().filter(is_under).collect();
+        for px in under {
+            covered += 1;
+            let before = Fingerprint::of(rig.editor.document());
+            rig.swipe(&[px]);
+            assert_eq!(selected(&rig), 1);
+            let now = rig.editor.view();
+            let places = now.gizmo.iter().flat_map(|shape| shape.lines.iter().flatten());
+            let middle = places.clone().sum::<DVec3>() / places.count() as f64;
+            let away = now.camera.project(middle, VIEWPORT_PX).unwrap().distance(px);
+            assert!(away < 60.0, "the gizmo is {away} px from the point that was clicked");
+            assert!(
+                Fingerprint::of(rig.editor.document()) == before,
+                "a click moves nothing"
+            );
+            rig.swipe(&[*first]);
+        }
+    }
+    assert!(covered > 0);
+}
+
 #[test]
 fn points_are_added_boxed_and_moved_together_in_one_step() {
     let mut rig = ball("cage");

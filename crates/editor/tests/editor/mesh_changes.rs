@@ -58,7 +58,7 @@ fn undo_and_redo_restore_every_bit_on_either_mesh() {
 }
 
 #[test]
-fn paint_stiffness_and_handles_stay_where_vertices_do_and_a_new_one_is_bare() {
+fn paint_stiffness_and_handles_stay_where_vertices_do_and_a_new_one_continues_its_rim() {
     for (case, shape) in open_shapes() {
         let mut rig = Rig::open(shape);
         rig.paint_handle();
@@ -83,11 +83,24 @@ fn paint_stiffness_and_handles_stay_where_vertices_do_and_a_new_one_is_bare() {
         for (vertex, position) in rig.model.surface.positions.iter().enumerate() {
             let old = place_in_old(position);
             new_count += usize::from(old.is_none());
-            let expected = old.map_or(Paint::Bare, |old| paint[old]);
-            assert_eq!(document.paint()[vertex], expected, "{case}: vertex {vertex}");
             let of = |field: Option<&[f64]>, at: usize| field.map_or(1.0, |field| field[at]);
-            let before = old.map_or(1.0, |old| of(stiffness.as_deref(), old));
-            assert_eq!(of(document.stiffness(), vertex), before, "{case}: vertex {vertex}");
+            let now = (document.paint()[vertex], of(document.stiffness(), vertex));
+            if let Some(old) = old {
+                let before = (paint[old], of(stiffness.as_deref(), old));
+                assert_eq!(now, before, "{case}: vertex {vertex}");
+                continue;
+            }
+            let around = rig.model.topology.neighbours(SurfaceVertex(vertex as u32)).iter();
+            let rim = around.map(|rim| (document.paint()[rim.index()], of(document.stiffness(), rim.index())));
+            let rim: Vec<(Paint, f64)> = rim.collect();
+            let range = rim.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), (_, own)| {
+                (low.min(*own), high.max(*own))
+            });
+            assert!(rim.iter().any(|(paint, _)| *paint == now.0), "{case}: vertex {vertex}");
+            assert!(
+                (range.0 - 1e-12..=range.1 + 1e-12).contains(&now.1),
+                "{case}: vertex {vertex}"
+            );
         }
         assert_eq!(
             new_count,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_editor::{Command, Event, KeptSide, Key, MeshChange, RimUse, ToolMode};
+use pliant_editor::{Button, Command, Event, KeptSide, Key, MeshChange, Modifiers, Pointer, RimUse, ToolMode};
 use pliant_mesh::{SurfaceVertex, shapes};
 
 use crate::rig::new_mesh::{bowl, open_shapes, used};
@@ -97,10 +97,10 @@ fn a_line_cuts_by_the_plane_through_it_and_the_eye_and_keeps_the_side_that_is_as
                 rig.move_to(to);
                 rig.release(to);
                 let request = rig.editor.take_stitch().unwrap();
-                let MeshChange::Cut(plane, side) = request.change else {
+                let MeshChange::Cut(plane, side, spared) = request.change else {
                     panic!("{:?}", request.change)
                 };
-                assert_eq!(side, kept);
+                assert_eq!((side, spared), (kept, Vec::new()));
                 assert!(rig.editor.view().wants_cut.is_none(), "one drag, one cut");
                 let camera = *rig.editor.view().camera;
                 for point in &rig.model.surface.positions {
@@ -114,6 +114,26 @@ fn a_line_cuts_by_the_plane_through_it_and_the_eye_and_keeps_the_side_that_is_as
                 }
             }
         }
+    }
+    // With Shift, the other side goes.
+    let shift = |position_px| Pointer {
+        position_px,
+        modifiers: Modifiers::SHIFT,
+    };
+    for (kept, turned) in [
+        (KeptSide::Positive, KeptSide::Negative),
+        (KeptSide::Negative, KeptSide::Positive),
+        (KeptSide::Both, KeptSide::Both),
+    ] {
+        let mut rig = Rig::open(bowl());
+        rig.command(Command::CutAlongLine(kept));
+        rig.press(DVec2::new(300.0, 320.0));
+        rig.send(Event::PointerMoved(shift(DVec2::new(520.0, 250.0))));
+        rig.send(Event::PointerReleased(shift(DVec2::new(520.0, 250.0)), Button::Primary));
+        let MeshChange::Cut(_, side, _) = rig.editor.take_stitch().unwrap().change else {
+            panic!()
+        };
+        assert_eq!(side, turned);
     }
     // A click draws no line.
     let mut rig = Rig::open(bowl());

@@ -3,22 +3,25 @@
 //! Every frame is solved for the handles' transforms at its time, and starts from the same shape, so that a frame is the
 //! same wherever a run begins.
 
+mod kind;
 mod report;
 
-use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::Bound;
-use pliant_editor::{EditFile, Setup, Start, Timeline, sum_of_shapes};
-use pliant_io::{FewTargets, Format, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
+use pliant_editor::{Dye, EditFile, Setup, Start, Timeline, sum_of_shapes};
+use pliant_io::{FewTargets, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
 use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex};
 
+use self::kind::Kind;
+pub use self::kind::animation_path;
 pub use self::report::{AnimationReport, MorphReport};
 use crate::EngineError;
 use crate::apply::{Prepared, check_bends, prepare};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::{Destination, NewFile, Staged, Staging};
+use crate::flow::with_dye;
 use crate::frames::Frames;
 use crate::loading::Loaded;
 use crate::report::{FrameTimes, ms_since};
@@ -95,7 +98,7 @@ pub fn animate(animation: &Animate<'_>, watch: &Watch, staging: &Staging) -> Res
     let (loaded, load_ms) = job.load(job.file, watch)?;
     let edit = job.edit_with_examples(&loaded, watch)?;
     let edit = with_keys(&edit)?;
-    let animated = stage_animation(animation, &loaded, edit, watch, staging)?;
+    let animated = stage_animation(animation, &loaded, (edit, None), watch, staging)?;
     let report = AnimationReport {
         load_ms,
         ..animated.report
@@ -124,14 +127,15 @@ pub struct Animated {
 }
 
 /// Solves every frame of an animation of a file that was read already, for an edit that contains all that it needs, and
-/// prepares its files. The job's own file and edit only give their names.
+/// prepares its files. `dye` was kept as vertex colours, for each surface vertex. The job's own file and edit only give
+/// their names.
 ///
 /// # Errors
 /// Any refusal of the output, of the edit or of a frame.
 pub fn stage_animation(
     animation: &Animate<'_>,
     loaded: &Loaded,
-    edit: &EditFile,
+    (edit, dye): (&EditFile, Option<&[Dye]>),
     watch: &Watch,
     staging: &Staging,
 ) -> Result<Animated, EngineError> {
@@ -158,7 +162,12 @@ pub fn stage_animation(
         true => None,
         false => Some(prepare(job.file, model, &setup, job.budget, watch)?),
     };
+    let is_morph = matches!(kind, Kind::Morphs);
+    let colours = dye
+        .map(|dye| with_dye(loaded, dye, job.output, is_morph))
+        .unwrap_or_default();
     let mut run = Run {
+        colours: colours.colours.as_deref(),
         animation,
         loaded,
         setup: &setup,
@@ -171,6 +180,8 @@ pub fn stage_animation(
             ..AnimationReport::at_start(loaded, setup.method.name(), animation.fps)
         },
     };
+    run.report.warnings.extend(colours.lost);
+    run.report.warnings.extend(frames.left_after());
     let beside = report_to.as_ref();
     let staged = match kind {
         Kind::Cache(format) => run.cache(moving, format, staging)?,
@@ -184,32 +195,6 @@ pub fn stage_animation(
         staged,
         report: run.finished(),
     })
-}
-
-/// The kind of an output.
-enum Kind {
-    Cache(PointCacheFormat),
-    /// A glTF with an animation of morph targets.
-    Morphs,
-    /// A file for each frame.
-    Files,
-}
-
-impl Kind {
-    fn of(output: &Path) -> Result<Self, EngineError> {
-        let name = output.to_string_lossy();
-        if let Some(format) = PointCacheFormat::of_name(&name) {
-            return Ok(Self::Cache(format));
-        }
-        let format = Format::of_name(&name).map_err(|error| EngineError::Arguments(format!("--output: {error}")))?;
-        match (Frames::of(output, 1), format) {
-            (Frames::Each { .. }, _) => Ok(Self::Files),
-            (Frames::Last(..), Format::Glb | Format::Gltf) => Ok(Self::Morphs),
-            (Frames::Last(..), _) => Err(EngineError::Arguments(format!(
-                "--output {name} is one file: end its name in -#### for numbered files, or write a .glb, .pc2 or .mdd"
-            ))),
-        }
-    }
 }
 
 /// The number of frames up to a time, both ends included.
@@ -237,6 +222,8 @@ fn is_at_rest(edit: &EditFile, timeline: &Timeline) -> bool {
 /// An animation that is being written.
 struct Run<'a> {
     animation: &'a Animate<'a>,
+    /// Other colours of the drawn vertices, if there are some.
+    colours: Option<&'a [[u16; 4]]>,
     loaded: &'a Loaded,
     setup: &'a Setup,
     timeline: &'a Timeline,
@@ -269,6 +256,7 @@ impl Run<'_> {
             self.model().drawn_positions(&shown, &mut positions);
             let save = SaveAs {
                 inside_out: &self.setup.inside_out,
+                colours: self.colours,
                 beside: beside.map(|report| ("--report", report)),
                 ..SaveAs::shape(&positions, &place)
             };
@@ -323,6 +311,7 @@ impl Run<'_> {
         let rest = self.model().rest_positions();
         let save = SaveAs {
             inside_out: &self.setup.inside_out,
+            colours: self.colours,
             animation: Some(&animation),
             beside: beside.map(|report| ("--report", report)),
             ..SaveAs::shape(&rest, self.animation.job.output)

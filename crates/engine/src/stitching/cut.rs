@@ -55,7 +55,7 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
             deleted = flags(&selection, &loaded.model);
             CutBy::Deleted(&deleted)
         }
-        CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep),
+        CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep, &[]),
     };
     let CutFile { made, left, gone } = cut_file(&loaded, by, output, report, watch)?;
     let stitched = job.remaking.stage(
@@ -82,8 +82,8 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
 pub(super) enum CutBy<'a> {
     /// The border of deleted surface vertices: a flag for each.
     Deleted(&'a [bool]),
-    /// A plane.
-    Plane(Plane, Keep),
+    /// A plane, and a flag for each surface vertex that is spared.
+    Plane(Plane, Keep, &'a [bool]),
 }
 
 /// A file without a part.
@@ -107,7 +107,7 @@ pub(super) fn cut_file(
     let sources = [Source::of(loaded, &drawn)];
     let channels = Channels::of(&sources);
     let shape = sources[0].with_part(channels, |part| match by {
-        CutBy::Plane(plane, keep) => NewShape::cut_along(part, &plane, keep),
+        CutBy::Plane(plane, keep, spared) => NewShape::cut_along(part, &plane, keep, spared),
         CutBy::Deleted(flags) => NewShape::cut(part, flags),
     });
     let mut shape = shape.map_err(|error| refused(&loaded.path, error))?;

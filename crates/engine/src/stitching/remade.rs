@@ -75,8 +75,9 @@ pub fn remake(
             let deleted = flags(present, vertices, loaded);
             cut_file(loaded, CutBy::Deleted(&deleted), &path, ReportTo::Caller, watch)?.made
         }
-        MeshChange::Cut(plane, side) => {
-            let by = cut_by(*plane, *side)?;
+        MeshChange::Cut(plane, side, spared) => {
+            let spared = flags(present, spared, loaded);
+            let by = cut_by(*plane, *side, &spared)?;
             cut_file(loaded, by, &path, ReportTo::Caller, watch)?.made
         }
         MeshChange::Append(name) => {
@@ -103,7 +104,7 @@ fn fill(loaded: &Loaded, holes: Holes, path: &Path, watch: &Watch) -> Result<Mad
     Ok(filled(loaded, holes, path, ReportTo::Caller, watch)?.made)
 }
 
-fn cut_by(plane: CutPlane, side: KeptSide) -> Result<CutBy<'static>, EngineError> {
+fn cut_by(plane: CutPlane, side: KeptSide, spared: &[bool]) -> Result<CutBy<'_>, EngineError> {
     let plane = Plane::of(plane.normal, plane.distance).ok_or_else(|| {
         EngineError::Arguments("the plane has no direction: draw a longer line across the shape".to_owned())
     })?;
@@ -112,7 +113,7 @@ fn cut_by(plane: CutPlane, side: KeptSide) -> Result<CutBy<'static>, EngineError
         KeptSide::Negative => Keep::Negative,
         KeptSide::Both => Keep::Both,
     };
-    Ok(CutBy::Plane(plane, keep))
+    Ok(CutBy::Plane(plane, keep, spared))
 }
 
 /// Joins the parts of the open file that a change calls B to the others. `now` is the file in its present shape; the

@@ -83,7 +83,7 @@ fn a_file_is_replaced_only_on_request_and_refusals_are_words() {
     let none = filled(&closed, &out, Holes::Every, Replace::Never)
         .unwrap_err()
         .to_string();
-    assert!(none.contains("no border") && !out.exists(), "{none}");
+    assert!(none.contains("no hole to fill") && !out.exists(), "{none}");
     filled(&file, &file, Holes::Every, Replace::WithOriginalKept).unwrap();
     assert!(is_closed(&model(&file)));
 }

@@ -71,7 +71,7 @@ fn every_change_in_the_window_stops_without_a_shape() {
     let changes = [
         (&present, MeshChange::FillAll),
         (&present, MeshChange::Delete(vec![SurfaceVertex(count as u32 / 2)])),
-        (&present, MeshChange::Cut(plane, KeptSide::Positive)),
+        (&present, MeshChange::Cut(plane, KeptSide::Positive, Vec::new())),
         (&present, append),
         (&appended, MeshChange::Merge(merge)),
     ];

@@ -8,8 +8,9 @@ use pliant_mesh::{Drawn, DrawnVertex};
 use crate::convert::Polygons;
 use crate::save::bits::bit_equal;
 use crate::save::turned::{triangle_wound_back, wound_back};
+use crate::scene::reading::SceneAndDrawn;
+use crate::scene::stored::{Scene, Stored};
 use crate::scene::unsaved::UnsavedShape;
-use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 
 impl Scene {

@@ -2,9 +2,9 @@
 
 use pliant_mesh::{Cancel, Drawn, Progress};
 
-use super::pose::has_same_faces;
-use super::{Scene, Stored};
 use crate::difference::{self, Difference};
+use crate::scene::pose::has_same_faces;
+use crate::scene::stored::{Scene, Stored};
 use crate::{Format, MorphDeltas, Placement, Save};
 
 impl Scene {

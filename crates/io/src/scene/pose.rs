@@ -7,8 +7,8 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::save::bits::bit_equal;
-use crate::scene::Scene;
 use crate::scene::check::Faces;
+use crate::scene::stored::Scene;
 
 /// The pose's position for each of the drawn vertices of `rest`; `None` if it has other vertices or faces. `rest` and
 /// `pose` are scenes with their drawn sets.

@@ -9,7 +9,7 @@ use crate::convert::{NewMesh, Parting, Polygons};
 use crate::save::Saved;
 use crate::save::course::Course;
 use crate::save::moved::check_single;
-use crate::scene::write_new;
+use crate::scene::writing::write_new;
 use crate::{Appearance, Format, SaveError};
 
 /// A shape with its appearance, to be written as a new file of any format.

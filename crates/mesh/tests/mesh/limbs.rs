@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use glam::DVec2;
 use pliant_mesh::{Cancel, Drawn, Joint, Model, Shape, SurfaceVertex, joint_of, shapes};
@@ -16,6 +17,14 @@ fn triangle_at(model: &Model, z: f64, side: usize) -> (u32, glam::DVec3) {
     let near: Vec<u32> = all.filter(|&t| (middle(t).z - z).abs() < 0.1).collect();
     let chosen = near[side % near.len()];
     (chosen, middle(chosen))
+}
+
+/// Checks a joint that was found from a height and side: its height, its radius, and that it points up.
+fn assert_upright(joint: &Joint, (z, side): (f64, usize), heights: Range<f64>, radius: f64) {
+    let from = format!("from {z}, side {side}");
+    assert!(heights.contains(&joint.centre.z), "{from}: {}", joint.centre);
+    assert!((joint.radius - radius).abs() < 0.05, "{from}: {}", joint.radius);
+    assert!(joint.axis.z > 0.95, "{from}: {}", joint.axis);
 }
 
 #[test]
@@ -38,17 +47,7 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
             let (triangle, middle) = triangle_at(&model, z, side);
             let joint = joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap();
             let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
-            assert!(
-                (0.7..1.4).contains(&joint.centre.z),
-                "from {z}, side {side}: {}",
-                joint.centre
-            );
-            assert!(
-                (joint.radius - 0.46).abs() < 0.05,
-                "from {z}, side {side}: {}",
-                joint.radius
-            );
-            assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
+            assert_upright(&joint, (z, side), 0.7..1.4, 0.46);
         }
     }
 }
@@ -123,17 +122,7 @@ fn a_tail_like_half_a_ball_leads_to_the_crease_around_it() {
             let joint = joint_at(&model, triangle_at(&model, z, side));
             let joint = joint.unwrap_or_else(|| panic!("no joint from {z}, side {side}"));
             // The crease is at 0.95; half a radius beside it is still on the tail.
-            assert!(
-                (0.8..1.12).contains(&joint.centre.z),
-                "from {z}, side {side}: {}",
-                joint.centre
-            );
-            assert!(
-                (joint.radius - 0.3).abs() < 0.05,
-                "from {z}, side {side}: {}",
-                joint.radius
-            );
-            assert!(joint.axis.z > 0.95, "from {z}, side {side}: {}", joint.axis);
+            assert_upright(&joint, (z, side), 0.8..1.12, 0.3);
         }
     }
 }

@@ -77,7 +77,10 @@ pub(super) fn chosen(
     holes: Holes,
 ) -> Result<(Vec<usize>, Vec<Unfilled>), StitchError> {
     if borders.sound.is_empty() && borders.faulty.is_empty() {
-        return Err(StitchError::NoBorder);
+        return Err(match holes {
+            Holes::Every | Holes::Largest(_) => StitchError::NoHole,
+            Holes::At(_) | Holes::Between(_) => StitchError::NoBorder,
+        });
     }
     let at = |vertex: u32| {
         let count = model.drawn.file_vertex_count();

@@ -91,7 +91,8 @@ impl Join {
         Ok(joins)
     }
 
-    /// The joins of the borders that are nearest and differ least in length. With `holds` B does not move first.
+    /// The joins of the borders that are nearest and differ least in length. With `holds` B does not move first, and
+    /// the borders whose points have the least way to each other are joined.
     pub fn by_nearness(parts: [&Part<'_>; 2], borders: [&Borders; 2], holds: bool) -> Vec<Self> {
         let most = |side: usize| borders[side].sound.len().min(MOST_BORDERS);
         let a: Vec<Line> = (0..most(0)).map(|k| line(parts[0], borders[0], k)).collect();
@@ -206,7 +207,8 @@ struct Candidate {
     j: usize,
     shift: f64,
     is_congruent: bool,
-    /// The distance of the borders and the difference of their lengths, in world units.
+    /// The distance of the borders and the difference of their lengths, in world units. If B does not move first, the
+    /// root mean square of the ways between their points.
     cost: f64,
     /// The motion that takes B's border onto A's; `None` for rest.
     motion: Option<RigidMotion>,
@@ -250,12 +252,15 @@ impl Candidate {
         if !congruent.is_empty() {
             return congruent;
         }
-        let of_nearest = nearest.map(|(_, shift)| Self {
+        let of_nearest = nearest.map(|(distance, shift)| Self {
             i,
             j,
             shift,
             is_congruent: false,
-            cost: apart,
+            cost: match holds {
+                true => (distance / SAMPLES as f64).sqrt(),
+                false => apart,
+            },
             motion: fit(&samples(b, shift), &of_a).filter(|_| !holds),
         });
         of_nearest.into_iter().collect()

@@ -222,6 +222,26 @@ fn borders_of_other_shapes_and_counts_join_without_a_crack_by_every_method() {
     }
 }
 
+/// A has a narrow border far away that is as long as B's, and a wide one where B is.
+#[test]
+fn a_part_that_stays_is_joined_to_the_border_that_it_is_at() {
+    let narrow = shapes::moved(&dome(3, 0.4, 1.0), DAffine3::from_translation(DVec3::X * 1.6));
+    let a = model(shapes::together(&[used(&dome(3, 1.0, 1.0)), used(&narrow)]));
+    let below = DAffine3::from_translation(DVec3::NEG_Z * 0.1) * DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    let mut lower = shapes::moved(&dome(3, 0.42, 1.0), below);
+    lower.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let merged = joined(&a, &model(used(&lower)), &[], "poisson", PlacementOfB::Kept).unwrap();
+    let whole = unwelded(&merged);
+    check_sound(&whole, 1);
+    let left = &whole.topology.boundary_loops()[0];
+    let middle = left
+        .iter()
+        .map(|vertex| whole.surface.positions[vertex.index()])
+        .sum::<DVec3>()
+        / left.len() as f64;
+    assert!(middle.distance(DVec3::X * 1.6) < 0.1, "the far one is left: {middle}");
+}
+
 #[test]
 fn pairs_that_contradict_each_other_are_refused_in_words() {
     let tube = || model(shapes::tube(24, 6, 3.0));

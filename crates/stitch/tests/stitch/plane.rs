@@ -21,7 +21,7 @@ fn cut(model: &Model, plane: &Plane, keep: Keep) -> Result<NewShape, StitchError
         },
         normals: None,
     };
-    NewShape::cut_along(&part, plane, keep)
+    NewShape::cut_along(&part, plane, keep, &[])
 }
 
 fn as_model(shape: &NewShape) -> Model {

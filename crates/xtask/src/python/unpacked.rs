@@ -42,8 +42,15 @@ pub fn tests(verdict: &mut Verdict) {
 }
 
 fn run(python: &Path) -> Result<(), String> {
-    // All targets, because other features than those of the tests would build the dependencies a second time.
-    succeed(&mut cargo(&["build", "--locked", "--workspace", "--all-targets"]))?;
+    // With the tests, because other features than theirs would build the dependencies a second time.
+    succeed(&mut cargo(&[
+        "build",
+        "--locked",
+        "--workspace",
+        "--lib",
+        "--bins",
+        "--tests",
+    ]))?;
     let built = target_folder().join("debug");
     let folder = lay_out(&built)?;
     let mut pytest = Command::new(python);

@@ -25,7 +25,7 @@ use crate::window::threads::message::{Message, Purpose};
 use crate::window::widgets::theme;
 use pliant_engine::control_mesh::control_mesh;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, ExistingFrames, Loaded, examples, is_project};
+use pliant_engine::{EngineError, ExistingFrames, Loaded, animation_path, examples, is_project};
 
 impl Application {
     pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {
@@ -82,12 +82,15 @@ impl Application {
 
     /// Writes the document's unsaved changes.
     fn save_copy(&mut self, path: &Path, content: Content) {
+        // A failure before this is over.
+        self.notes.headline = None;
         let mark = self.editor.save_mark();
         self.session.save(path, content, mark, &self.workers);
     }
 
-    /// Writes the edit over time, off the window's thread.
+    /// Writes the edit over time, off the window's thread: a file for each frame if the format has one shape in a file.
     pub fn export_animation(&mut self, path: &Path) {
+        let path = &animation_path(path);
         let Some(open) = &self.session.open else { return };
         let mesh = open.mesh.clone();
         match self.editor.edit_file() {
@@ -97,6 +100,7 @@ impl Application {
                     fps: self.editor.document().animation().fps(),
                     frames: ExistingFrames::Keep,
                     mesh,
+                    dye: self.editor.document().fluid().kept.clone(),
                     watch: Watch::default(),
                 };
                 self.save_copy(path, Content::Animation(Box::new(animation)));

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel};
-use pliant_editor::{Command, Event};
+use pliant_editor::Event;
 
 use crate::window::application::Application;
 use crate::window::bars::recent_menu::Recent;
@@ -192,8 +192,8 @@ impl Application {
         if self.dialogs.memory.show(context, &mut self.settings) {
             self.take_memory();
         }
-        if let Some(settings) = self.dialogs.merge.show(context, &self.editor) {
-            self.editor.handle(Event::Command(Command::SetMerge(settings)));
+        if let Some(command) = self.dialogs.merge.show(context, &self.editor) {
+            self.editor.handle(Event::Command(command));
         }
         if self.dialogs.about.open
             && let Some(command) = self.dialogs.about.show(context, &self.viewport.device())

@@ -39,6 +39,8 @@ impl Application {
     }
 
     fn wish(&mut self, wish: SaveWish) {
+        // A failure before this is over.
+        self.notes.headline = None;
         // A stretch of play that has not ended is in no file.
         self.editor.handle(Event::Command(Command::PauseFlow));
         if self.editor.view().is_animating {

@@ -64,7 +64,9 @@ pub fn show(
                         "No graphics card was found, so {name} draws slowly on the processor."
                     ));
             }
-            if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
+            let job = view.jobs.first().map(|(kind, _)| kind.doing());
+            let doing = file_work.doing.map(|(doing, _)| doing);
+            if job.is_some_and(|job| ui.small_button(stop(job, doing)).clicked()) {
                 commands.push(Command::CancelJobs);
             }
             // A name of its own: what comes and goes at the right end must not make other buttons of these between the
@@ -72,7 +74,7 @@ pub fn show(
             let rest = UiBuilder::new().scope_id(Id::unique("the status line's sentences"));
             let rest = rest.layout(Layout::left_to_right(Align::Center));
             ui.scope_builder(rest, |ui| {
-                answer = file_line(ui, file_work);
+                answer = file_line(ui, file_work, job);
                 for (kind, share) in &view.jobs {
                     // A job too short to notice needs no bar.
                     if *share > 0.0 {
@@ -90,8 +92,13 @@ pub fn show(
     answer
 }
 
-/// The activity on files, and the ways to end it.
-fn file_line(ui: &mut egui::Ui, file_work: &FileWork) -> Option<FileWorkAnswer> {
+/// The label of the button that stops work: if there is `other` work to stop, it names its own.
+fn stop(doing: &str, other: Option<&str>) -> String {
+    other.map_or_else(|| "Stop".to_owned(), |_| format!("Stop {doing}"))
+}
+
+/// The activity on files, and the ways to end it. The editor's own work is `job`.
+fn file_line(ui: &mut egui::Ui, file_work: &FileWork, job: Option<&str>) -> Option<FileWorkAnswer> {
     let mut answer = None;
     if let Some(waiting) = &file_work.waiting {
         ui.add(Spinner::new().size(14.0));
@@ -110,7 +117,7 @@ fn file_line(ui: &mut egui::Ui, file_work: &FileWork) -> Option<FileWorkAnswer> 
     }
     if let Some((doing, share)) = file_work.doing {
         progress(ui, doing, share);
-        if ui.small_button("Stop").clicked() {
+        if ui.small_button(stop(doing, job)).clicked() {
             answer = Some(FileWorkAnswer::Stop);
         }
     }

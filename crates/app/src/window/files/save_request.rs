@@ -70,6 +70,8 @@ pub struct AnimationToWrite {
     pub frames: ExistingFrames,
     /// The mesh as it was read.
     pub mesh: RestMesh,
+    /// The dye that was kept as vertex colours, for each surface vertex.
+    pub dye: Option<Arc<Vec<Dye>>>,
     /// The stage of the work.
     pub watch: Watch,
 }

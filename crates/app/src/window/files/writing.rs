@@ -200,7 +200,8 @@ fn ready_animation(
         frames: animation.frames,
     };
     let watch = animation.watch.stopped_by(cancel);
-    let animated = stage_animation(&wanted, loaded, &animation.edit, &watch, staging)?;
+    let dye = animation.dye.as_ref().map(|dye| dye.as_slice());
+    let animated = stage_animation(&wanted, loaded, (&animation.edit, dye), &watch, staging)?;
     Ok(Ready {
         notes: animated.report.warnings,
         ..Ready::new(animated.staged, WrittenKind::Animation)

@@ -125,15 +125,20 @@ impl EventQueue {
             }
             self.waiting.push_back((event, self.now));
         }
-        let (mut is_decided, mut is_button) = (false, false);
+        let (mut is_typed, mut is_decided, mut is_button) = (false, false, false);
         while let Some((event, came)) = self.waiting.front() {
             // The pointer's place is known once a frame: a press counts at its own place, not at the pointer's later
             // one.
             let moves_on = is_button && matches!(event, Event::PointerMoved(_) | Event::PointerGone);
-            if (is_decided && is_press(event)) || moves_on {
+            let decides = is_press(event) && may_change_listener(event, typing);
+            // Enter and Tab count for all of the text before them: a dialog may look at its keys before its fields.
+            let leaves_text = is_typed && decides;
+            if (is_decided && is_press(event)) || moves_on || leaves_text {
                 break;
             }
-            is_decided |= is_press(event) && may_change_listener(event, typing);
+            is_decided |= decides;
+            is_typed |=
+                typing && (is_press(event) || matches!(event, Event::Text(_) | Event::Paste(_) | Event::Ime(_)));
             is_button |= matches!(event, Event::PointerButton { .. });
             self.heard = *came;
             events.extend(self.waiting.pop_front().map(|(event, _)| event));
@@ -324,7 +329,12 @@ mod tests {
         entered.extend([key(Key::Enter), key(Key::Num2)]);
         let parts = portions(entered.clone(), true);
         assert_eq!(parts.concat(), entered);
-        assert_eq!(parts[0].len(), 5, "what follows Enter is for whoever has the keys then");
+        let lengths: Vec<usize> = parts.iter().map(Vec::len).collect();
+        assert_eq!(
+            lengths,
+            [4, 1, 1],
+            "Enter finds the text in its field, and what follows it is for whoever has the keys then"
+        );
     }
 
     #[test]

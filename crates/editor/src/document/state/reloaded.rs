@@ -12,6 +12,7 @@ use super::Document;
 use crate::document::access::Access;
 use crate::document::carried_examples::carry_examples;
 use crate::document::content::{Content, Paint};
+use crate::document::continuation::Continuation;
 use crate::document::fluid::Fluid;
 use crate::document::handle::{HandleId, PivotPlace};
 use crate::document::kept_shape::KeptShape;
@@ -19,8 +20,8 @@ use crate::document::matching::Matching;
 
 impl Document {
     /// The same regions and handles on the vertices of a new mesh that match its own, which has the present shape at
-    /// rest, with the parts that are turned inside out turned there. Handles rest at their visible positions. With it
-    /// come sentences about what was lost.
+    /// rest, with the parts that are turned inside out turned there. They continue into new triangles. Handles rest at
+    /// their visible positions. With it come sentences about what was lost.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -47,6 +48,7 @@ impl Document {
         content.settled = true;
         content.strength = None;
         content.inside_out = Arc::default();
+        continue_into_new(&mut content, matching, model);
         let mut attachments = (*applied.content.attachments).clone();
         lost.extend(carry_examples(&mut attachments, matching, model, budget, cancel)?);
         content.attachments = Arc::new(attachments);
@@ -75,7 +77,8 @@ impl Document {
         former
     }
 
-    /// Makes a handle of the vertices of a new mesh that match none of the former one. What was there before and is not
+    /// Makes a handle of the vertices of a new mesh that match none of the former one. Closed parts of it that face
+    /// inwards are turned inside out, because a cut or a merge could no longer tell. What was there before and is not
     /// painted rests, whatever the handle touches.
     pub(crate) fn hold_new_part(&mut self, name: &str, matching: &Matching, model: &Model) -> Option<HandleId> {
         let new = (0..).zip(&matching.of_new).filter(|(_, old)| old.is_none());
@@ -96,11 +99,14 @@ impl Document {
             parts.entry(part).or_insert(Loose::Rest);
         });
         self.set_loose(self.loose(), parts);
+        let is_new = |part: &&u32| matching.of_new_part[**part as usize].is_none();
+        let mut turned = (*self.content.inside_out).clone();
+        turned.extend(model.inside_out.iter().filter(is_new));
+        self.set_inside_out(Arc::new(turned));
         Some(id)
     }
 
-    /// Puts the pivots that belong in the middle of their handles there, after a change that has moved vertices. The
-    /// handles rest.
+    /// Puts the pivots that belong in the middle of their handles there, after a change of vertices. The handles rest.
     pub(crate) fn centre_pivots(&mut self, model: &Model) {
         let mut sums: BTreeMap<HandleId, (DVec3, f64)> = BTreeMap::new();
         for (paint, position) in self.content.paint.iter().zip(&model.surface.positions) {
@@ -225,6 +231,18 @@ impl Document {
             isolated,
             small: self.access.small,
         }
+    }
+}
+
+/// Continues paint, stiffness, continuity and dye into the new triangles of former parts.
+fn continue_into_new(content: &mut Content, matching: &Matching, model: &Model) {
+    let continuation = Continuation::of(matching, model);
+    continuation.paint(Arc::make_mut(&mut content.paint).as_mut_slice());
+    for field in [&mut content.stiffness, &mut content.continuity].into_iter().flatten() {
+        continuation.numbers(Arc::make_mut(field).as_mut_slice());
+    }
+    for dye in [&mut content.fluid.dye, &mut content.fluid.kept].into_iter().flatten() {
+        continuation.dye(Arc::make_mut(dye).as_mut_slice());
     }
 }
 

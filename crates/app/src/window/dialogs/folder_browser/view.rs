@@ -371,7 +371,7 @@ fn format(ui: &mut egui::Ui, browser: &mut FolderBrowser) {
 fn format_name(ending: &str) -> String {
     match Format::of_name(&format!("model.{ending}")) {
         Ok(format) => format!("{format} (.{ending})"),
-        Err(_) => format!(".{ending}"),
+        Err(_) => format!("{} (.{ending})", ending.to_uppercase()),
     }
 }
 
