@@ -66,33 +66,13 @@ impl CreaseSearch {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
     use pliant_mesh::{Drawn, Model, shapes};
 
     use super::*;
 
+    /// The radius of the ball of [`shapes::half_ball`].
     const BALL: f64 = 0.15;
     const HANDLE: f64 = 0.1;
-
-    /// A sheet over the unit square with half a ball on its middle, above or below it: a nose or a socket.
-    fn half_ball(cells: usize, side: f64) -> Drawn {
-        let mut drawn = shapes::grid(cells, cells);
-        for position in &mut drawn.positions {
-            let flat = *position - DVec3::new(0.5, 0.5, 0.0);
-            let distance = flat.length();
-            let (radius, height) = match distance {
-                ..0.25 => {
-                    let (sin, cos) = (FRAC_PI_2 * distance / 0.25).sin_cos();
-                    (BALL * sin, BALL * cos)
-                }
-                0.25..0.5 => (BALL + (distance - 0.25) * (0.5 - BALL) / 0.25, 0.0),
-                _ => (distance, 0.0),
-            };
-            *position = flat.normalize_or_zero() * radius + DVec3::Z * (side * height);
-        }
-        drawn
-    }
 
     /// The farthest distance from the ball's axis that a handle on its top reaches.
     fn reaches(drawn: Drawn, scale: f64) -> f64 {
@@ -113,20 +93,20 @@ mod tests {
     #[test]
     fn a_handle_on_a_nose_reaches_its_crease_and_one_on_a_ball_as_far_as_ever() {
         for cells in [60, 90, 140] {
-            let end = reaches(half_ball(cells, 1.0), 1.0) / BALL;
+            let end = reaches(shapes::half_ball(cells, 1.0), 1.0) / BALL;
             assert!((0.99..1.3).contains(&end), "{cells} cells: {end}");
         }
         let larger = glam::DAffine3::from_scale(DVec3::splat(20.0));
-        let end = reaches(shapes::moved(&half_ball(90, 1.0), larger), 20.0) / (20.0 * BALL);
+        let end = reaches(shapes::moved(&shapes::half_ball(90, 1.0), larger), 20.0) / (20.0 * BALL);
         assert!((0.99..1.3).contains(&end), "larger: {end}");
         // Out of a socket the edge is convex: on the sheet around it 3 × .1 less the wall of .136 are left.
-        let end = reaches(half_ball(90, -1.0), 1.0) - BALL;
+        let end = reaches(shapes::half_ball(90, -1.0), 1.0) - BALL;
         assert!((0.1..0.17).contains(&end), "socket: {end}");
     }
 
     #[test]
     fn a_handle_that_ends_in_a_crease_still_reaches_beyond_it() {
-        let model = shapes::model(half_ball(90, 1.0));
+        let model = shapes::model(shapes::half_ball(90, 1.0));
         let all = (0..).map(SurfaceVertex).zip(&model.surface.positions);
         let members = all.filter(|(_, p)| p.z > 1e-3).map(|(v, _)| (v, 0.0));
         let members: Vec<(SurfaceVertex, f64)> = members.collect();

@@ -37,7 +37,7 @@ use self::reach::{handle_radius, most_of};
 pub use self::rim::Rim;
 pub(crate) use self::rim::bounded;
 use self::tips::free_tips;
-use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
+use crate::document::{Access, Document, HandleId, PART_RADII, Paint, Reach, Tips};
 use crate::region::rim::rims;
 
 /// The input of the region. The job that measures it shares the model.
@@ -154,18 +154,21 @@ impl Region {
             let mut limit = most;
             if most > 0.0 {
                 let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
-                let radius = handle_radius(surface, topology, members);
                 let reached = match *reach {
-                    Reach::Part | Reach::Creased(_) => creases.within(surface, topology, &seeds, radius, most),
-                    Reach::Radii(_) | Reach::Length(_) => {
+                    Reach::Feature | Reach::Creased(_) => {
+                        let radius = handle_radius(surface, topology, members);
+                        creases.within(surface, topology, &seeds, radius, most)
+                    }
+                    Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
                         search.within(&surface.triangles, topology, position, &seeds, most)
                     }
                 };
-                if *reach == Reach::Part {
+                if matches!(reach, Reach::Feature | Reach::Part) {
                     distances.resize(surface.positions.len(), f64::NAN);
+                    let radius = most / PART_RADII;
                     limit = end_of_part(surface, topology, reached, &mut distances, radius, most);
                 }
-                for (vertex, _) in reached.iter().filter(|(_, distance)| *distance <= limit) {
+                for (vertex, _) in reached.iter().take_while(|(_, distance)| *distance <= limit) {
                     roles[vertex.index()] = Role::Free;
                 }
             }

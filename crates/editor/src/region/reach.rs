@@ -12,7 +12,7 @@ pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, memb
     match reach {
         Reach::Creased(length) | Reach::Length(length) => length,
         Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
-        Reach::Part => PART_RADII * handle_radius(surface, topology, members),
+        Reach::Feature | Reach::Part => PART_RADII * handle_radius(surface, topology, members),
     }
 }
 

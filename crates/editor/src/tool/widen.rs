@@ -28,7 +28,9 @@ impl Widen {
         let handle = workspace.selected()?.clone();
         let start_length = match handle.reach {
             Reach::Creased(length) | Reach::Length(length) => length,
-            Reach::Part | Reach::Radii(_) => workspace.computed().region.reach_length(handle.id).unwrap_or(0.0),
+            Reach::Feature | Reach::Part | Reach::Radii(_) => {
+                workspace.computed().region.reach_length(handle.id).unwrap_or(0.0)
+            }
         };
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let centre_px = camera.project(handle.centre(), viewport_px)?;
@@ -40,8 +42,8 @@ impl Widen {
             handle: handle.id,
             start_length: start_length.max(px),
             make: match handle.reach {
-                Reach::Part | Reach::Creased(_) => Reach::Creased,
-                Reach::Radii(_) | Reach::Length(_) => Reach::Length,
+                Reach::Feature | Reach::Creased(_) => Reach::Creased,
+                Reach::Part | Reach::Radii(_) | Reach::Length(_) => Reach::Length,
             },
             start_px: pointer_px.distance(centre_px).max(8.0),
             centre_px,

@@ -64,8 +64,9 @@ enum StoredPivotPlace {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum StoredReach {
-    Part,
+    Feature,
     Creased(f64),
+    Part,
     Radii(f64),
     Length(f64),
 }
@@ -112,8 +113,9 @@ impl StoredHandle {
                 PivotPlace::Picked => StoredPivotPlace::Picked,
             },
             reach: match handle.reach {
-                Reach::Part => StoredReach::Part,
+                Reach::Feature => StoredReach::Feature,
                 Reach::Creased(length) => StoredReach::Creased(length),
+                Reach::Part => StoredReach::Part,
                 Reach::Radii(radii) => StoredReach::Radii(radii),
                 Reach::Length(length) => StoredReach::Length(length),
             },
@@ -146,7 +148,7 @@ impl StoredHandle {
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
         let is_reach_refused = match self.reach {
-            StoredReach::Part => false,
+            StoredReach::Feature | StoredReach::Part => false,
             StoredReach::Creased(size) | StoredReach::Radii(size) | StoredReach::Length(size) => {
                 !(size.is_finite() && size >= 0.0)
             }
@@ -184,8 +186,9 @@ impl StoredHandle {
                 StoredPivotPlace::Picked => PivotPlace::Picked,
             },
             reach: match self.reach {
-                StoredReach::Part => Reach::Part,
+                StoredReach::Feature => Reach::Feature,
                 StoredReach::Creased(length) => Reach::Creased(length),
+                StoredReach::Part => Reach::Part,
                 StoredReach::Radii(radii) => Reach::Radii(radii),
                 StoredReach::Length(length) => Reach::Length(length),
             },
