@@ -34,8 +34,7 @@ pub fn concavities(
     for (place, v) in (0..).zip(vertices) {
         places[v.index()] = place;
     }
-    let own = |v: &SurfaceVertex| Some(places[v.index()]).filter(|&place| place != u32::MAX);
-    let neighbours = |place: usize| topology.neighbours(vertices[place]).iter().filter_map(own);
+    let neighbours = Neighbours::of(topology, vertices, &places);
     let position = |place: u32| positions[vertices[place as usize].index()];
     let of_each = || (0..vertices.len()).into_par_iter().with_min_len(PIECE);
     let normal = |place: usize| {
@@ -48,7 +47,8 @@ pub fn concavities(
     };
     let weight = |place: usize| {
         let here = position(place as u32);
-        let squares = neighbours(place).map(|other| here.distance_squared(position(other)));
+        let others = neighbours.at(place).iter();
+        let squares = others.map(|&other| here.distance_squared(position(other)));
         let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
         // Without neighbours, or at one point with them, nothing is smoothed.
         let weight = 4.0 * scale * scale * count / sum;
@@ -60,11 +60,7 @@ pub fn concavities(
     };
     let normals: Vec<DVec3> = of_each().map(normal).collect();
     let weights: Vec<f64> = of_each().map(weight).collect();
-    let mean = |present: &[DVec3], place: usize| {
-        let sum: DVec3 = neighbours(place).map(|other| present[other as usize]).sum();
-        sum / (neighbours(place).count().max(1)) as f64
-    };
-    let smooth = smoothed(&normals, &weights, mean);
+    let smooth = smoothed(&normals, &weights, &neighbours);
     let concavity = |place: usize| {
         let (here, normal) = (position(place as u32), smooth[place]);
         let rate = |other: u32| {
@@ -72,26 +68,58 @@ pub fn concavities(
             (normal - smooth[other as usize]).dot(edge) / edge.length_squared()
         };
         // `max` leaves out NaN, of edges without a length.
-        neighbours(place).map(rate).fold(0.0, f64::max)
+        neighbours.at(place).iter().copied().map(rate).fold(0.0, f64::max)
     };
     of_each().map(concavity).collect()
 }
 
+/// The neighbours of each of some vertices among these, by their places in the list, one after another in memory.
+struct Neighbours {
+    starts: Vec<u32>,
+    all: Vec<u32>,
+}
+
+impl Neighbours {
+    /// `places` has the place of each vertex of the mesh, or `u32::MAX` if it is not listed.
+    fn of(topology: &Topology, vertices: &[SurfaceVertex], places: &[u32]) -> Self {
+        let (mut starts, mut all) = (Vec::with_capacity(vertices.len() + 1), Vec::new());
+        starts.push(0);
+        for &vertex in vertices {
+            let own = topology.neighbours(vertex).iter().map(|v| places[v.index()]);
+            all.extend(own.filter(|&place| place != u32::MAX));
+            starts.push(all.len() as u32);
+        }
+        Self { starts, all }
+    }
+
+    fn at(&self, place: usize) -> &[u32] {
+        &self.all[self.starts[place] as usize..self.starts[place + 1] as usize]
+    }
+
+    /// The mean of their values; 0 without neighbours.
+    fn mean(&self, values: &[DVec3], place: usize) -> DVec3 {
+        let others = self.at(place);
+        let sum: DVec3 = others.iter().map(|&other| values[other as usize]).sum();
+        sum / others.len().max(1) as f64
+    }
+}
+
 /// The unit normals N with (1 + w) N − w `mean`(N) = n, nearly: w are the weights and n the normals.
-fn smoothed(normals: &[DVec3], weights: &[f64], mean: impl Fn(&[DVec3], usize) -> DVec3 + Sync) -> Vec<DVec3> {
+fn smoothed(normals: &[DVec3], weights: &[f64], neighbours: &Neighbours) -> Vec<DVec3> {
     let most = weights.iter().copied().fold(0.0, f64::max);
     // The largest factor by which an average shrinks an error.
     let shrinks = most / (1.0 + most);
     let (mut before, mut present) = (normals.to_vec(), normals.to_vec());
     let mut ahead = 1.0;
     for round in 0..(ROUNDS * most.sqrt()).ceil() as usize {
-        let next = (0..normals.len()).into_par_iter().with_min_len(PIECE).map(|place| {
+        let places = before.par_iter_mut().with_min_len(PIECE).enumerate();
+        // The next normal takes the place of the one before.
+        places.for_each(|(place, normal)| {
             let share = weights[place] / (1.0 + weights[place]);
-            let averaged = normals[place].lerp(mean(&present, place), share);
-            before[place] + (averaged - before[place]) * ahead
+            let averaged = normals[place].lerp(neighbours.mean(&present, place), share);
+            *normal += (averaged - *normal) * ahead;
         });
-        let next: Vec<DVec3> = next.collect();
-        (before, present) = (present, next);
+        std::mem::swap(&mut before, &mut present);
         ahead = match round {
             0 => 1.0 / (1.0 - 0.5 * shrinks * shrinks),
             _ => 1.0 / (1.0 - 0.25 * shrinks * shrinks * ahead),
