@@ -73,10 +73,10 @@ mod workspace;
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use document::{
-    Access, Animation, Carries, Content, Document, Dye, FlowOptions, Fluid, HANDLE_COLOURS, HISTORY_BYTES, Handle,
-    HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId,
-    ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name,
-    sum_of_shapes,
+    Access, Animation, Carries, Content, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid, HANDLE_COLOURS,
+    HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape,
+    KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin,
+    object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;

@@ -54,7 +54,8 @@ mod weld;
 pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use contacts::{Contact, component_areas, contacts};
 pub use curves::{
-    Curve, CurveMotion, CurvePath, CurveRefused, LARGEST_TWIST_DEG, SCALE_RANGE, pulled_chain, triangles_under,
+    BendRange, Curve, CurveMotion, CurvePath, CurveRefused, FREE_BEND, JointLimits, LARGEST_TWIST_DEG, SCALE_RANGE,
+    pulled_briefly, pulled_chain, pulled_within, triangles_under,
 };
 pub use drawn::{Drawn, DrawnSet, Object, Rounding};
 pub use findings::{Finding, FindingKind, Findings, Named};

@@ -1,7 +1,7 @@
 //! Commands on the curve of the selected handle.
 
 use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
-use crate::workspace::{divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve};
+use crate::workspace::{divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range};
 
 /// Lets the points of curves follow a dragged one at their distances, or no longer.
 pub(super) const TOGGLE_CHAIN: Entry<()> = Entry {
@@ -71,6 +71,14 @@ pub(super) const PIN_CURVE_POINTS: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| without_curve_points(state),
     action: Action::Do(|context, ()| pin_or_unpin_curve_points(context.workspace)),
+};
+
+/// Limits the bends at control points.
+pub(super) const SET_BEND_RANGE: Entry<[f64; 2]> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, _| without_curve_points(state),
+    action: Action::Do(|context, range_deg| set_bend_range(context.workspace, range_deg)),
 };
 
 fn without_curve_points(state: &State<'_>) -> Option<Reason> {

@@ -261,6 +261,8 @@ commands! {
     RemoveCurvePoints = curves::REMOVE_CURVE_POINTS;
     /// Pins the selected points of the selected handle's curve, or unpins them.
     PinCurvePoints = curves::PIN_CURVE_POINTS;
+    /// Sets the least and the most bend at the selected points of the curve, in degrees from 0 to 180.
+    SetBendRange(range_deg: [f64; 2]) = curves::SET_BEND_RANGE;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// The gizmo's mode.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
+use pliant_mesh::{BendRange, Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
 /// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
@@ -17,6 +17,16 @@ struct Parts {
     twist_deg: Vec<f64>,
     scale: Vec<f64>,
     pinned: Vec<u32>,
+    /// A range for each control point, or none if no joint has limits.
+    bends_deg: Vec<[f64; 2]>,
+}
+
+/// The bends of a control point without limits, in degrees.
+pub const FREE_BEND_DEG: [f64; 2] = [0.0, 180.0];
+
+/// Returns true if this is the least and the most bend of a joint, in degrees from 0 to 180.
+pub(crate) fn is_bend_range_deg([least, most]: [f64; 2]) -> bool {
+    FREE_BEND_DEG[0] <= least && least <= most && most <= FREE_BEND_DEG[1]
 }
 
 impl HandleCurve {
@@ -55,6 +65,7 @@ impl HandleCurve {
             twist_deg,
             scale,
             pinned: Vec::new(),
+            bends_deg: Vec::new(),
         })))
     }
 
@@ -75,6 +86,47 @@ impl HandleCurve {
     /// The numbers of the pinned control points, ascending.
     pub fn pinned(&self) -> &[u32] {
         &self.0.pinned
+    }
+
+    /// The same whose joints bend within limits when one of its points is pulled as in a chain: the least and the most bend
+    /// at each control point in degrees, 0 where the segments before and after it are one straight line. The curve itself
+    /// keeps its shape. What is no range is [`FREE_BEND_DEG`].
+    #[must_use]
+    pub fn bent_within(mut self, mut bends_deg: Vec<[f64; 2]>) -> Self {
+        bends_deg.resize(self.rest().points().len(), FREE_BEND_DEG);
+        for range in bends_deg.iter_mut().filter(|range| !is_bend_range_deg(**range)) {
+            *range = FREE_BEND_DEG;
+        }
+        if bends_deg.iter().all(|range| *range == FREE_BEND_DEG) {
+            bends_deg.clear();
+        }
+        if bends_deg != self.0.bends_deg {
+            Arc::make_mut(&mut self.0).bends_deg = bends_deg;
+        }
+        self
+    }
+
+    /// The least and the most bend at a control point, in degrees.
+    pub fn bend_deg(&self, point: usize) -> [f64; 2] {
+        self.0.bends_deg.get(point).copied().unwrap_or(FREE_BEND_DEG)
+    }
+
+    /// The same for each control point, or nothing if no joint has limits.
+    pub fn bends_deg(&self) -> &[[f64; 2]] {
+        &self.0.bends_deg
+    }
+
+    /// The same in radians.
+    pub(crate) fn bends_rad(&self) -> Vec<BendRange> {
+        let bends = self.0.bends_deg.iter();
+        bends.map(|range| range.map(f64::to_radians)).collect()
+    }
+
+    /// The curve with the pins and the limits of another one of as many points.
+    #[must_use]
+    pub(crate) fn with_joints_of(self, other: &Self) -> Self {
+        let pinned = self.pinned_at(other.pinned().to_vec());
+        pinned.bent_within(other.bends_deg().to_vec())
     }
 
     /// The curve at rest.
@@ -124,7 +176,7 @@ impl HandleCurve {
             vec![0.0; count],
             vec![1.0; count],
         );
-        resting.map_or_else(|_| self.clone(), |curve| curve.pinned_at(self.pinned().to_vec()))
+        resting.map_or_else(|_| self.clone(), |curve| curve.with_joints_of(self))
     }
 
     /// The curve with the same rest whose control points go to `moved` with these twists and scales; `None` if it would
@@ -132,7 +184,7 @@ impl HandleCurve {
     pub(crate) fn with(&self, moved: Vec<DVec3>, twist_deg: Vec<f64>, scale: Vec<f64>) -> Option<Self> {
         let rest = self.rest();
         let curve = Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()?;
-        Some(curve.pinned_at(self.pinned().to_vec()))
+        Some(curve.with_joints_of(self))
     }
 
     /// Its mirror image across a plane.
@@ -143,7 +195,7 @@ impl HandleCurve {
         let points = mirrored(rest.points());
         let moved = mirrored(self.moved());
         let curve = Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()?;
-        Some(curve.pinned_at(self.pinned().to_vec()))
+        Some(curve.with_joints_of(self))
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

@@ -21,7 +21,9 @@ use crate::stitching::StitchRequest;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
 use crate::warning::in_window_words;
-use crate::workspace::{ControlSource, SnapshotKey, Workspace, lasting, region_colour, rims, take_stitching};
+use crate::workspace::{
+    ControlSource, SnapshotKey, Workspace, lasting, region_colour, rims, selected_curve, take_stitching,
+};
 use crate::{EditFile, MeshReference, geometry_hash};
 
 impl Editor {
@@ -124,6 +126,16 @@ impl Editor {
             selected: self.workspace.controls.points().len(),
             is_own: self.document().attachment().is_some(),
         })
+    }
+
+    /// The least and the most bend at the first of the selected points of an open curve, in degrees; `None` if no point
+    /// between its ends is selected.
+    pub fn selected_bend_deg(&self) -> Option<[f64; 2]> {
+        let (_, curve) = selected_curve(&self.workspace)?;
+        let joints = 1..curve.rest().points().len() as u32 - 1;
+        let selected = self.workspace.controls.points().iter();
+        let joint = selected.copied().find(|point| joints.contains(point))?;
+        (!curve.rest().is_closed()).then(|| curve.bend_deg(joint as usize))
     }
 
     fn cursor(&self) -> Cursor {

@@ -1,4 +1,5 @@
-//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale` and `pinned`.
+//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale`, `pinned` and
+//! `bends`.
 
 use glam::DVec3;
 use serde::de::{Deserializer, Error};
@@ -6,7 +7,7 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use super::transform::Numbers;
-use crate::document::HandleCurve;
+use crate::document::{HandleCurve, is_bend_range_deg};
 
 /// The members in the file; each list but `points` may be left out.
 #[derive(Serialize, Deserialize)]
@@ -23,6 +24,8 @@ struct StoredCurve {
     scale: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pinned: Vec<u32>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    bends: Vec<[f64; 2]>,
 }
 
 impl Serialize for HandleCurve {
@@ -39,6 +42,7 @@ impl Serialize for HandleCurve {
             twist: unless(self.twist_deg(), 0.0),
             scale: unless(self.scale(), 1.0),
             pinned: self.pinned().to_vec(),
+            bends: self.bends_deg().to_vec(),
         };
         stored.serialize(serializer)
     }
@@ -56,6 +60,18 @@ impl<'de> Deserialize<'de> for HandleCurve {
                 "can't be followed: its `pinned` has the point {point}, but there are {count}, counted from 0"
             )));
         }
+        if !stored.bends.is_empty() && stored.bends.len() != count {
+            return Err(D::Error::custom(format!(
+                "can't be followed: its `bends` has {} entries for {count} points",
+                stored.bends.len()
+            )));
+        }
+        if let Some(point) = stored.bends.iter().position(|range| !is_bend_range_deg(*range)) {
+            return Err(D::Error::custom(format!(
+                "can't be followed: its `bends` at point {point}, counted from 0, is no least and most angle from 0 to 180 \
+                 degrees"
+            )));
+        }
         let curve = Self::new(
             points.clone(),
             stored.closed,
@@ -63,7 +79,7 @@ impl<'de> Deserialize<'de> for HandleCurve {
             stored.twist.unwrap_or_else(|| vec![0.0; count]),
             stored.scale.unwrap_or_else(|| vec![1.0; count]),
         );
-        let curve = curve.map(|curve| curve.pinned_at(stored.pinned));
+        let curve = curve.map(|curve| curve.pinned_at(stored.pinned).bent_within(stored.bends));
         curve.map_err(|(list, refused)| D::Error::custom(format!("can't be followed: its `{list}` {refused}")))
     }
 }

@@ -89,6 +89,7 @@ impl CurveKey {
             self.twist.clone().unwrap_or_else(|| vec![0.0; count]),
             self.scale.clone().unwrap_or_else(|| vec![1.0; count]),
         )
+        .map(|keyed| keyed.with_joints_of(curve))
         .map_err(|(list, refused)| format!("can't be followed: its `{list}` {refused}"))
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::pulled_curve::pulled_at;
+use super::pulled_curve::Chain;
 use crate::document::{HandleCurve, HandleId, put_curve};
 use crate::workspace::{ControlSource, Workspace, middle, put_attachment};
 
@@ -126,7 +126,12 @@ impl MovedControls {
         let mut seen: Vec<DVec3> = curve.moved().iter().map(|p| then.transform_point3(*p)).collect();
         match self.points.as_slice() {
             [(point, from)] if self.is_chain && !curve.rest().is_closed() => {
-                seen = pulled_at(&seen, curve.pinned(), *point as usize, *from + way(*from));
+                let chain = Chain {
+                    points: seen,
+                    pinned: curve.pinned().to_vec(),
+                    bends: curve.bends_rad(),
+                };
+                seen = chain.pulled(*point as usize, *from + way(*from));
             }
             points => {
                 for (point, from) in points {

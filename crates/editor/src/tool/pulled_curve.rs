@@ -1,96 +1,187 @@
-//! Curves as chains: a pulled point takes the others along at their distances, and pinned points stay.
+//! Curves as chains: a pulled point takes the others along at their distances, pinned points stay, and joints bend within
+//! their limits.
 
-use glam::DVec3;
-use pliant_mesh::pulled_chain;
+use glam::{DQuat, DVec3};
+use pliant_mesh::{BendRange, JointLimits, pulled_briefly, pulled_within};
 
 /// The most times that both sides of a pulled point between two pins answer each other.
 const MOST_ANSWERS: usize = 200;
 
+/// After so many answers, and again after as many, it is looked whether both sides still come nearer.
+const LOOK: usize = 8;
+
+/// They do not meet if more than this share of the gap between them is left since the last look.
+const SLOW: f64 = 0.9;
+
 /// The distance at which both sides meet, as a share of the chain's length.
 const MET: f64 = 1e-10;
 
-/// The chain with the given point pulled to a target, or as near to it as the pins let it come. Pinned points, given by
-/// their numbers, stay, and so does all beyond the nearest pin on either side. Without a pin before the pulled point the
-/// first point is one, and the points behind the pulled one keep their distances from it; the first point itself pulls
-/// the chain from its other end.
-pub(super) fn pulled_at(chain: &[DVec3], pinned: &[u32], point: usize, target: DVec3) -> Vec<DVec3> {
-    let pin = |number: &u32| *number as usize;
-    let before = pinned.iter().map(pin).filter(|pin| *pin < point).max();
-    let behind = pinned
-        .iter()
-        .map(pin)
-        .filter(|pin| (point + 1..chain.len()).contains(pin))
-        .min();
-    let last = chain.len() - 1;
-    let (before, behind) = match (before, behind) {
-        (None, None) if point == 0 => (None, Some(last)),
-        // A free end hangs on the pin behind it.
-        (None, Some(behind)) => (None, Some(behind)),
-        (before, behind) => (Some(before.unwrap_or(0)), behind),
-    };
-    let mut pulled = chain.to_vec();
-    match (before, behind) {
-        (Some(before), Some(behind)) => {
-            if let Some([left, right]) = between(chain, before, point, behind, target) {
-                pulled[before..=point].copy_from_slice(&left);
-                pulled[point..=behind].copy_from_slice(&right);
+/// The angle in radians by which a joint may miss its limits by rounding.
+const ROUNDING_RAD: f64 = 1e-9;
+
+/// The steps by which a point between two pins comes near to the place where a limit or the pins stop it.
+const HALVINGS: u32 = 8;
+
+/// A chain of points, the numbers of those that stay, and the bends that they may have, one for each point or none.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    pub(super) points: Vec<DVec3>,
+    pub(super) pinned: Vec<u32>,
+    pub(super) bends: Vec<BendRange>,
+}
+
+impl Chain {
+    /// The chain with the given point pulled to a target, or as near to it as pins and limits let it come. Pinned points
+    /// stay, and so does all beyond the nearest pin on either side. Without a pin before the pulled point the first point
+    /// is one, and the points behind the pulled one keep their distances from it; the first point itself pulls the chain
+    /// from its other end.
+    pub(super) fn pulled(&self, point: usize, target: DVec3) -> Vec<DVec3> {
+        let pin = |number: &u32| *number as usize;
+        let before = self.pinned.iter().map(pin).filter(|pin| *pin < point).max();
+        let after_it = point + 1..self.points.len();
+        let behind = self.pinned.iter().map(pin).filter(|pin| after_it.contains(pin)).min();
+        let last = self.points.len() - 1;
+        let (before, behind) = match (before, behind) {
+            (None, None) if point == 0 => (None, Some(last)),
+            // A free end hangs on the pin behind it.
+            (None, Some(behind)) => (None, Some(behind)),
+            (before, behind) => (Some(before.unwrap_or(0)), behind),
+        };
+        match (before, behind) {
+            (Some(before), Some(behind)) => self.pulled_between(before, point, behind, target),
+            (Some(before), None) => self.pulled_forwards(before, point, target),
+            (None, behind) => {
+                let mut pulled = self
+                    .reversed()
+                    .pulled_forwards(last - behind.unwrap_or(last), last - point, target);
+                pulled.reverse();
+                pulled
             }
         }
-        // The side without a pin moves along.
-        (Some(before), None) => {
-            let own = pulled_chain(&chain[before..=point], target);
-            pulled[before..=point].copy_from_slice(&own);
-            let way = pulled[point] - chain[point];
-            pulled[point + 1..].iter_mut().for_each(|own| *own += way);
-        }
-        (None, behind) => {
-            let behind = behind.unwrap_or(last);
-            let own = pulled_backwards(&chain[point..=behind], target);
-            pulled[point..=behind].copy_from_slice(&own);
-            let way = pulled[point] - chain[point];
-            pulled[..point].iter_mut().for_each(|own| *own += way);
+    }
+
+    /// The same chain from its last point to its first.
+    fn reversed(&self) -> Self {
+        let last = self.points.len() as u32 - 1;
+        Self {
+            points: self.points.iter().rev().copied().collect(),
+            pinned: self.pinned.iter().rev().map(|pin| last - pin).collect(),
+            bends: self.bends.iter().rev().copied().collect(),
         }
     }
-    pulled
-}
 
-/// The chain with its first point pulled to a target; the last one stays.
-fn pulled_backwards(chain: &[DVec3], target: DVec3) -> Vec<DVec3> {
-    let reversed: Vec<DVec3> = chain.iter().rev().copied().collect();
-    let mut pulled = pulled_chain(&reversed, target);
-    pulled.reverse();
-    pulled
-}
+    /// The chain with a point pulled about the pin before it. What comes after the point moves along, and turns as far as
+    /// the joint at the point needs.
+    fn pulled_forwards(&self, before: usize, point: usize, target: DVec3) -> Vec<DVec3> {
+        let mut pulled = self.points.to_vec();
+        let own = pulled_within(&self.points[before..=point], target, self.limits(before));
+        pulled[before..=point].copy_from_slice(&own);
+        let (from, to) = (self.points[point], pulled[point]);
+        let turn = self.points.get(point + 1).map_or(DQuat::IDENTITY, |next| {
+            let way = (*next - from).normalize_or(DVec3::X);
+            let allowed = self.limits(0).allowed(point, to - pulled[point - 1], way);
+            if allowed == way {
+                DQuat::IDENTITY
+            } else {
+                DQuat::from_rotation_arc(way, allowed.normalize())
+            }
+        });
+        for own in &mut pulled[point + 1..] {
+            *own = if turn == DQuat::IDENTITY {
+                *own + (to - from)
+            } else {
+                to + turn * (*own - from)
+            };
+        }
+        pulled
+    }
 
-/// Both sides of a point between two pins, from each pin to the point and from the point to the other one, pulled to a
-/// target: each in turn goes to where the other one has come. `None` if they do not meet, because the pins hold them.
-fn between(chain: &[DVec3], before: usize, point: usize, behind: usize, target: DVec3) -> Option<[Vec<DVec3>; 2]> {
-    let whole: f64 = chain[before..=behind]
-        .windows(2)
-        .map(|pair| pair[0].distance(pair[1]))
-        .sum();
-    let mut goal = target;
-    for _ in 0..MOST_ANSWERS {
-        let left = pulled_chain(&chain[before..=point], goal);
-        let met = left[point - before];
-        let right = pulled_backwards(&chain[point..=behind], met);
-        goal = right[0];
-        if goal.distance(met) <= MET * whole {
-            return Some([left, right]);
+    /// The limits of the joints from `first` on.
+    fn limits(&self, first: usize) -> JointLimits<'_> {
+        JointLimits {
+            bends: self.bends.get(first..).unwrap_or_default(),
+            before: first
+                .checked_sub(1)
+                .map(|before| self.points[first] - self.points[before]),
         }
     }
-    None
+
+    /// The chain with a point between two pins pulled as near to the target as they let it come, on the straight way.
+    fn pulled_between(&self, before: usize, point: usize, behind: usize, target: DVec3) -> Vec<DVec3> {
+        if let Some(met) = self.met(before, point, behind, target) {
+            return met;
+        }
+        let (mut share, mut step) = (0.0, 0.5);
+        let mut best = self.points.to_vec();
+        for _ in 0..HALVINGS {
+            let goal = self.points[point].lerp(target, share + step);
+            if let Some(met) = self.met(before, point, behind, goal) {
+                (best, share) = (met, share + step);
+            }
+            step *= 0.5;
+        }
+        best
+    }
+
+    /// Both sides of a point between two pins, from each pin to the point, pulled to a target: each in turn goes to where
+    /// the other one has come. `None` if they do not meet, because the pins or the limits hold them.
+    fn met(&self, before: usize, point: usize, behind: usize, target: DVec3) -> Option<Vec<DVec3>> {
+        let lengths = self.points[before..=behind]
+            .windows(2)
+            .map(|pair| pair[0].distance(pair[1]));
+        let whole: f64 = lengths.sum();
+        let reversed = self.reversed();
+        let end = self.points.len() - 1;
+        let (first, last) = (end - behind, end - point);
+        let (mut left, mut right) = (
+            self.points[before..=point].to_vec(),
+            reversed.points[first..=last].to_vec(),
+        );
+        let (mut goal, mut looked) = (target, f64::INFINITY);
+        for answer in 1..=MOST_ANSWERS {
+            left = pulled_briefly(&left, goal, self.limits(before));
+            let met = left[point - before];
+            right = pulled_briefly(&right, met, reversed.limits(first));
+            goal = right[behind - point];
+            let gap = goal.distance(met);
+            if gap > MET * whole {
+                if answer % LOOK == 0 && gap > SLOW * looked {
+                    return None;
+                }
+                looked = if answer % LOOK == 0 { gap } else { looked };
+                continue;
+            }
+            let mut pulled = self.points.to_vec();
+            pulled[point..=behind]
+                .iter_mut()
+                .zip(right.iter().rev())
+                .for_each(|(own, right)| *own = *right);
+            pulled[before..=point].copy_from_slice(&left);
+            let [way_before, way_after] = [pulled[point] - pulled[point - 1], pulled[point + 1] - pulled[point]];
+            let allowed = self
+                .limits(0)
+                .allowed(point, way_before, way_after.normalize_or(DVec3::X));
+            return (allowed.angle_between(way_after) <= ROUNDING_RAD).then_some(pulled);
+        }
+        None
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
 
-    use super::pulled_at;
+    use super::Chain;
 
     fn chain() -> Vec<DVec3> {
         let point = |x: i32| DVec3::new(f64::from(x), 0.1 * f64::from(x * x), 0.0);
         (0..7).map(point).collect()
+    }
+
+    fn pulled_at(points: &[DVec3], pinned: &[u32], point: usize, target: DVec3) -> Vec<DVec3> {
+        let (points, pinned) = (points.to_vec(), pinned.to_vec());
+        let bends = Vec::new();
+        Chain { points, pinned, bends }.pulled(point, target)
     }
 
     fn lengths(chain: &[DVec3]) -> Vec<f64> {
@@ -141,5 +232,40 @@ mod tests {
         assert!(pulled[3].distance(target) < 1e-6, "{}", pulled[3]);
         // An elbow is pulled about the shoulder and the hand that lies on a table.
         assert!(pulled[1] != chain[1] && pulled[5] != chain[5]);
+    }
+
+    #[test]
+    fn joints_bend_within_their_limits_beside_pins_and_between_them() {
+        let points = chain();
+        let bend = |points: &[DVec3], joint: usize| {
+            (points[joint] - points[joint - 1]).angle_between(points[joint + 1] - points[joint])
+        };
+        let bends = [[0.01, 0.5]; 7];
+        for pinned in [&[][..], &[3], &[0, 6], &[2, 5]] {
+            let chain = Chain {
+                points: points.clone(),
+                pinned: pinned.to_vec(),
+                bends: bends.to_vec(),
+            };
+            for point in (0..points.len()).filter(|point| !pinned.contains(&(*point as u32))) {
+                for by in [
+                    DVec3::new(-0.1, 0.2, 0.1),
+                    DVec3::new(-1.0, 2.0, 0.5),
+                    DVec3::new(-9.0, 1.0, 0.0),
+                ] {
+                    let pulled = chain.pulled(point, points[point] + by);
+                    assert!(
+                        pulled != points || by.length() > 1.0 || point == 1,
+                        "{pinned:?} {point} {by}"
+                    );
+                    assert_lengths_stay(&pulled, &format!("{pinned:?} {point} {by}"));
+                    for joint in 1..6 {
+                        let bend = bend(&pulled, joint);
+                        let case = format!("{pinned:?} {point} {by}: {bend} at {joint}");
+                        assert!((0.01 - 1e-8..=0.5 + 1e-8).contains(&bend), "{case}");
+                    }
+                }
+            }
+        }
     }
 }

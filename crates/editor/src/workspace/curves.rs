@@ -1,7 +1,7 @@
-//! Changes of the control points of the selected handle's curve: more of them, or fewer.
+//! Changes of the control points of the selected handle's curve: more of them or fewer, their pins and their limits.
 
 use super::state::Workspace;
-use crate::document::{HandleCurve, HandleId, HandleLine, put_curve};
+use crate::document::{FREE_BEND_DEG, HandleCurve, HandleId, HandleLine, is_bend_range_deg, put_curve};
 
 /// The most control points of a curve that is drawn and divided by hand.
 const MOST_POINTS: usize = 64;
@@ -29,6 +29,7 @@ pub(crate) fn divide_curve(workspace: &mut Workspace) {
         let rest = middle(&rest_places, curve.rest().length());
         let moved = middle(&moved_places, motion.moved().length());
         let next = (point + 1) % count;
+        lists.bends_deg.push(FREE_BEND_DEG);
         lists.points.push(curve.rest().position(rest));
         lists.moved.push(motion.moved().position(moved));
         lists
@@ -80,13 +81,40 @@ pub(crate) fn pin_or_unpin_curve_points(workspace: &mut Workspace) {
         true => pinned.retain(|point| !selected.contains(point)),
         false => pinned.extend(selected),
     }
+    change_joints(workspace, name, handle, |curve| curve.pinned_at(pinned.clone()));
+}
+
+/// Gives the selected control points the least and the most bend, in degrees. The curve keeps its shape until one of its
+/// points is pulled.
+pub(crate) fn set_bend_range(workspace: &mut Workspace, range_deg: [f64; 2]) {
+    let Some((handle, curve)) = selected_curve(workspace) else {
+        return;
+    };
+    if !is_bend_range_deg(range_deg) {
+        workspace.refuse("The bend is out of range: enter 0° to 180°, the least first.");
+        return;
+    }
+    let points = 0..curve.rest().points().len();
+    let selected = &workspace.controls;
+    let bend = |point: usize| match selected.contains(point as u32) {
+        true => range_deg,
+        false => curve.bend_deg(point),
+    };
+    let bends_deg: Vec<[f64; 2]> = points.map(bend).collect();
+    change_joints(workspace, "Limit the bend", handle, |curve| {
+        curve.bent_within(bends_deg.clone())
+    });
+}
+
+/// Changes the joints of a handle's curve and of its twin's.
+fn change_joints(workspace: &mut Workspace, name: &str, handle: HandleId, change: impl Fn(HandleCurve) -> HandleCurve) {
     let twin = workspace.document.handle(handle).and_then(|handle| handle.twin);
     workspace.change(name, |document| {
         for id in std::iter::once(handle).chain(twin.map(|twin| twin.handle)) {
             document.change_handle(id, |handle| {
                 let curve = handle.line.as_ref().and_then(HandleLine::curve).cloned();
                 handle.line = curve
-                    .map(|curve| HandleLine::Curve(curve.pinned_at(pinned.clone())))
+                    .map(|curve| HandleLine::Curve(change(curve)))
                     .or(handle.line.take());
             });
         }
@@ -107,6 +135,7 @@ struct Lists {
     twist_deg: Vec<f64>,
     scale: Vec<f64>,
     pinned: Vec<u32>,
+    bends_deg: Vec<[f64; 2]>,
 }
 
 impl Lists {
@@ -114,6 +143,7 @@ impl Lists {
         if curve.pinned().contains(&(point as u32)) {
             self.pinned.push(self.points.len() as u32);
         }
+        self.bends_deg.push(curve.bend_deg(point));
         self.points.push(curve.rest().points()[point]);
         self.moved.push(curve.moved()[point]);
         self.twist_deg.push(curve.twist_deg()[point]);
@@ -125,7 +155,7 @@ impl Lists {
         let curve = HandleCurve::new(self.points, is_closed, self.moved, self.twist_deg, self.scale);
         let Ok(curve) = curve else { return };
         workspace.controls.put([]);
-        let curve = curve.pinned_at(self.pinned);
+        let curve = curve.pinned_at(self.pinned).bent_within(self.bends_deg);
         workspace.change(name, |document| put_curve(document, handle, curve));
     }
 }

@@ -148,6 +148,61 @@ fn a_pinned_point_stays_while_the_end_is_pulled_and_pins_are_undone_and_kept() {
 }
 
 #[test]
+fn a_limited_joint_stops_a_pull_and_limits_are_undone_kept_and_refused_in_words() {
+    let mut rig = tube();
+    stroke(&mut rig, StrokeShape::Spine, 0.4, 0.97);
+    let at_rest = curve(&rig);
+    let joints = 1..at_rest.rest().points().len() - 1;
+    assert_eq!(rig.editor.selected_bend_deg(), None);
+    for joint in joints.clone() {
+        rig.swipe(&[px(&rig, at_rest.moved()[joint])]);
+        assert_eq!(rig.editor.selected_bend_deg(), Some([0.0, 180.0]));
+        rig.command(Command::SetBendRange([0.0, 12.0]));
+        assert_eq!(rig.editor.selected_bend_deg(), Some([0.0, 12.0]));
+    }
+    rig.command(Command::SetBendRange([20.0, 10.0]));
+    let problem = rig.editor.view().problem.map(|problem| problem.to_string());
+    assert!(problem.is_some_and(|problem| problem.contains("0° to 180°")));
+    rig.drain();
+    assert_eq!(rig.largest_displacement(), 0.0, "limits alone bend nothing");
+
+    let from_px = px(&rig, *at_rest.moved().last().unwrap());
+    rig.swipe(&[
+        from_px,
+        from_px + DVec2::new(-60.0, -110.0),
+        from_px + DVec2::new(-160.0, -200.0),
+    ]);
+    rig.drain();
+    let moved = curve(&rig);
+    assert_ne!(moved.moved(), at_rest.moved());
+    for joint in joints.clone() {
+        let [before, at, after] = [joint - 1, joint, joint + 1].map(|point| moved.moved()[point]);
+        let bend_deg = (at - before).angle_between(after - at).to_degrees();
+        assert!(bend_deg < 12.0 + 1e-6, "{joint}: {bend_deg}");
+    }
+    let limits = moved.bends_deg().to_vec();
+    assert_eq!(
+        limits.iter().filter(|range| **range == [0.0, 12.0]).count(),
+        joints.len()
+    );
+
+    let text = rig.editor.edit_file().unwrap().to_json();
+    let edit = EditFile::parse(&text).unwrap();
+    assert_eq!(edit.handles[0].curve.as_ref().unwrap().bends_deg(), limits);
+    let number = text.replace("12.0", "-12.0");
+    assert_ne!(number, text);
+    let refused = EditFile::parse(&number).unwrap_err().to_string();
+    assert!(refused.contains("`bends` at point 1"), "{refused}");
+
+    rig.undo();
+    assert_eq!(curve(&rig).bends_deg(), limits);
+    for _ in joints {
+        rig.undo();
+    }
+    assert!(curve(&rig) == at_rest);
+}
+
+#[test]
 fn a_spine_that_is_drawn_beside_the_middle_is_moved_into_it() {
     let mut rig = tube();
     let middle = rig.model.bounds().unwrap().centre();

@@ -6,11 +6,17 @@ use std::sync::Arc;
 
 use crate::rig::Rig;
 use glam::{DQuat, DVec3};
-use pliant_editor::{Beginning, Command, Event, HandleCurve, HandleLine, MeshReference, Project, geometry_hash};
+use pliant_editor::{
+    Beginning, Command, Event, FREE_BEND_DEG, HandleCurve, HandleLine, MeshReference, Project, geometry_hash,
+};
 use pliant_mesh::shapes;
 use serde_json::json;
 
 const LENGTH: f64 = 24.0;
+
+/// The pinned point of [`edit`]'s curve, and the bends that it may have there.
+const PIN: u32 = 4;
+const BEND_DEG: [f64; 2] = [5.0, 140.0];
 
 /// A bar of which every third ring follows its middle line, which bends by 200 degrees and twists.
 fn edit(method: &str) -> String {
@@ -20,7 +26,11 @@ fn edit(method: &str) -> String {
     let rings: Vec<usize> = (0..drawn.positions.len())
         .filter(|v| drawn.positions[*v].x % 3.0 == 0.0)
         .collect();
-    let curve = json!({ "points": points, "moved": moved, "twist": (0..13).map(|i| 10 * i).collect::<Vec<i32>>() });
+    let bend = |point: u32| if point == PIN { BEND_DEG } else { [0.0, 180.0] };
+    let curve = json!({
+        "points": points, "moved": moved, "twist": (0..13).map(|i| 10 * i).collect::<Vec<i32>>(),
+        "pinned": [PIN], "bends": (0..13).map(bend).collect::<Vec<_>>(),
+    });
     json!({
         "version": 1, "method": { "name": method },
         "handles": [{ "name": "spine", "select": { "vertices": rings }, "curve": curve }],
@@ -123,6 +133,7 @@ fn an_applied_shape_has_its_curve_at_rest_and_a_reset_one_too() {
     let mut rig = opened("arap");
     rig.command(Command::Apply);
     rig.drain();
+    assert_joints(&present(&rig), "applied");
     let applied = rig.editor.document().handles()[0].clone();
     assert!(!applied.is_displaced() && missed(&rig, DVec3::ZERO) < 5e-3);
     assert!(applied.line.unwrap().curve().unwrap().rest().points()[12].distance(on_arc(LENGTH).0) < 1e-12);
@@ -136,6 +147,13 @@ fn an_applied_shape_has_its_curve_at_rest_and_a_reset_one_too() {
 fn present(rig: &Rig) -> HandleCurve {
     let handle = &rig.editor.document().handles()[0];
     handle.line.as_ref().and_then(HandleLine::curve).unwrap().clone()
+}
+
+/// Checks that a curve still has its pin and its limits.
+fn assert_joints(curve: &HandleCurve, case: &str) {
+    assert_eq!(curve.pinned(), [PIN], "{case}");
+    assert_eq!(curve.bend_deg(PIN as usize), BEND_DEG, "{case}");
+    assert_eq!(curve.bend_deg(0), FREE_BEND_DEG, "{case}");
 }
 
 #[test]
@@ -159,6 +177,7 @@ fn keys_hold_curves_which_pass_from_one_to_the_next_and_projects_and_edits_keep_
     }
     go_to(&mut rig, 0.5);
     let middle = present(&rig);
+    assert_joints(&middle, "between keys");
     for ((point, a), b) in middle.moved().iter().zip(bent.moved()).zip(at_rest.moved()) {
         assert!(
             point.distance(a.midpoint(*b)) < 1e-12,
@@ -186,6 +205,8 @@ fn keys_hold_curves_which_pass_from_one_to_the_next_and_projects_and_edits_keep_
     open(&mut rig, &edit.to_json());
     assert_eq!(present(&rig), bent, "an edit shows its beginning");
     assert_eq!(rig.editor.edit_file().unwrap().keys, edit.keys);
+    go_to(&mut rig, 1.0);
+    assert_joints(&present(&rig), "a key of an opened edit");
 }
 
 #[test]

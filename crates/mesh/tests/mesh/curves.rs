@@ -4,7 +4,9 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_mesh::{Curve, CurveMotion, CurvePath, CurveRefused, pulled_chain};
+use pliant_mesh::{
+    BendRange, Curve, CurveMotion, CurvePath, CurveRefused, FREE_BEND, JointLimits, pulled_chain, pulled_within,
+};
 
 /// Open and closed curves, in a plane and out of it, evenly and unevenly spaced.
 fn curves() -> Vec<Curve> {
@@ -352,6 +354,97 @@ fn a_pulled_chain_keeps_its_lengths_and_arrives_where_it_can() {
         assert_eq!(pulled_chain(&chain, chain[chain.len() - 1]), chain);
     }
 }
+
+/// The bends of a chain's joints, the first one after a segment in the direction `before`.
+fn bends(chain: &[DVec3], before: Option<DVec3>) -> Vec<f64> {
+    let ways = chain.windows(2).map(|pair| pair[1] - pair[0]);
+    let ways: Vec<DVec3> = before.into_iter().chain(ways).collect();
+    ways.windows(2).map(|pair| pair[0].angle_between(pair[1])).collect()
+}
+
+#[test]
+fn a_pulled_chain_with_limits_bends_within_them_keeps_its_lengths_and_follows_a_way_of_allowed_poses() {
+    // A leg: a hip, a knee that is never straight, and an ankle; and a tail that bends little everywhere.
+    let leg = vec![
+        DVec3::ZERO,
+        DVec3::new(0.3, -2.0, 0.0),
+        DVec3::new(-0.2, -3.8, 0.1),
+        DVec3::new(0.6, -4.0, 0.1),
+    ];
+    let tail: Vec<DVec3> = (0..9)
+        .map(|i| DVec3::new(f64::from(i), 0.02 * f64::from(i * i), 0.0))
+        .collect();
+    let leg_bends: Vec<BendRange> = vec![[0.0, 1.2], [0.1, 2.4], [0.3, 1.8], FREE_BEND];
+    let tail_bends: Vec<BendRange> = vec![[0.0, 0.35]; 9];
+    for (chain, allowed, before) in [(leg, leg_bends, DVec3::NEG_Y), (tail, tail_bends, DVec3::X)] {
+        let lengths =
+            |points: &[DVec3]| -> Vec<f64> { points.windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        let whole: f64 = lengths(&chain).iter().sum();
+        for before in [None, Some(before)] {
+            let limits = JointLimits {
+                bends: &allowed,
+                before,
+            };
+            let allowed = &allowed[usize::from(before.is_none())..];
+            let within = |points: &[DVec3], case: &str| {
+                assert_eq!(points[0], chain[0], "{case}");
+                for (new, old) in lengths(points).iter().zip(lengths(&chain)) {
+                    assert!((new - old).abs() < 1e-9 * whole, "{case}: {new} {old}");
+                }
+                for (bend, [least, most]) in bends(points, before).into_iter().zip(allowed) {
+                    assert!(
+                        (least - 1e-9..=most + 1e-9).contains(&bend),
+                        "{case}: {bend} beyond {least} to {most}"
+                    );
+                }
+            };
+            within(&chain, "at rest");
+            // Targets anywhere, most of them out of reach.
+            for number in 0..40 {
+                let turn = 2.4 * f64::from(number);
+                let ray = DVec3::new(turn.cos(), turn.sin(), 1.0 - f64::from(number) / 20.0).normalize();
+                let target = chain[0] + ray * (whole * 0.07 * f64::from(number % 17));
+                within(&pulled_within(&chain, target, limits), &format!("{number}"));
+            }
+            // Every joint goes over its whole range, and the chain follows the end of such poses from where it is.
+            let mut follows = chain.clone();
+            for step in 0..=24 {
+                let share = 0.5 - 0.5 * (f64::from(step) / 24.0 * TAU).cos();
+                let bend = |[least, most]: BendRange| least + (0.1 + 0.8 * share) * (most - least);
+                let mut way = before.unwrap_or(chain[1] - chain[0]).normalize();
+                let mut pose = vec![chain[0]];
+                for (joint, length) in lengths(&chain).into_iter().enumerate() {
+                    if joint > 0 || before.is_some() {
+                        let angle = bend(limits.bends[joint]).min(0.9);
+                        way = DQuat::from_axis_angle(DVec3::new(0.1, 0.2, 1.0).cross(way).normalize(), angle) * way;
+                    }
+                    pose.push(pose[joint] + way * length);
+                }
+                let target = pose[pose.len() - 1];
+                follows = pulled_within(&follows, target, limits);
+                let missed = follows[follows.len() - 1].distance(target);
+                within(&follows, &format!("step {step}"));
+                assert!(missed < 1e-6 * whole, "step {step}: {missed:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_chain_without_limits_is_pulled_to_the_bit_as_with_free_ones() {
+    let chain: Vec<DVec3> = (0..7)
+        .map(|i| DVec3::new(f64::from(i), f64::from(i % 3), 0.2 * f64::from(i % 2)))
+        .collect();
+    let bends = [FREE_BEND; 7];
+    let limits = JointLimits {
+        bends: &bends,
+        before: Some(DVec3::Y),
+    };
+    for target in [DVec3::new(2.0, 1.0, 3.0), DVec3::new(40.0, 0.0, 0.0)] {
+        assert_eq!(pulled_within(&chain, target, limits), pulled_chain(&chain, target));
+    }
+}
+
 #[test]
 fn a_place_at_a_control_point_has_the_frame_of_the_places_beside_it() {
     let points: Vec<DVec3> = (0..25).map(|i| DVec3::new(f64::from(i), 1.0, 1.0)).collect();

@@ -7,6 +7,7 @@ use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
 
+use super::bend;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::number_field::{DEGREES, LENGTHS, Unit, dragged, number_field};
@@ -191,6 +192,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
             ui.end_row();
             depth(ui, editor, handle, commands);
             parent(ui, editor, handle, commands);
+            bend::show(ui, editor, commands);
         });
 }
 

@@ -1,6 +1,7 @@
 //! The panel beside the view: the bending of the surface, and beneath it a page with handles, with the method's options,
 //! or with objects, history and file.
 
+mod bend;
 mod examples;
 pub(in crate::window) mod file;
 pub(in crate::window) mod handles;
