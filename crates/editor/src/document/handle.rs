@@ -80,8 +80,8 @@ pub(crate) const PART_RADII: f64 = 3.0;
 /// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
-    /// To the end of the feature that the handle is on, where the surface around it widens or in a concave crease; at most
-    /// three radii.
+    /// To the end of the feature that the handle is on, where the surface around it widens or, unless it is a limb, in a
+    /// concave crease; at most three radii.
     #[default]
     Feature,
     /// This distance in world units, where ways across concave creases count as longer, as they do for

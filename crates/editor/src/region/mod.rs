@@ -8,6 +8,7 @@
 //! A method with control points (a cage, a lattice) or examples can also bend without handles: then all unpainted
 //! vertices are free, unless some vertices were painted free.
 
+mod branching;
 mod creases;
 mod limb_chain;
 mod limb_joint;
