@@ -4,6 +4,7 @@
 //! there are no positions.
 
 mod areas;
+mod clusters;
 mod concavity;
 mod curvature;
 mod damage;
