@@ -1,6 +1,8 @@
 //! The track of a curve on a surface: points in triangles and on edges, each in one triangle with the next.
 
-use glam::DVec3;
+use std::f64::consts::PI;
+
+use glam::{DQuat, DVec3};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use super::line::{Sight, SurfaceCurve};
@@ -77,9 +79,7 @@ impl Track {
             track.push(start);
             track.triangles.push(start.triangle);
             if start.triangle != end.triangle {
-                let (section, direction) = section(curve, [start, end]);
-                let goal = Goal::Triangle(end.triangle);
-                let way = section.way(model, (start.triangle, start.position), direction, goal);
+                let way = between(model, curve, [start, end]);
                 let way = way.ok_or(StitchError::CurveLost { from })?;
                 track.stations.extend(way.crossings.into_iter().map(Station::On));
                 track.triangles.extend(way.triangles);
@@ -173,6 +173,27 @@ fn section(curve: &SurfaceCurve, [start, end]: [Placed; 2]) -> (Section, DVec3) 
         through: start.position,
     };
     (section, along - sight * sight.dot(along))
+}
+
+/// The number of planes through two points that are tried, evenly turned, if that along the sight leads nowhere: it may
+/// meet the surface at both points in loops of their own.
+const PLANES: u32 = 12;
+
+/// The way from a point of a curve to the next.
+fn between(model: &Model, curve: &SurfaceCurve, ends: [Placed; 2]) -> Option<Way> {
+    let [start, end] = ends;
+    let (from, goal) = ((start.triangle, start.position), Goal::Triangle(end.triangle));
+    let (section, direction) = section(curve, ends);
+    section.way(model, from, direction, goal).or_else(|| {
+        let along = end.position - start.position;
+        let axis = along.try_normalize()?;
+        let turned = (1..PLANES).map(|step| Section {
+            normal: DQuat::from_axis_angle(axis, PI * f64::from(step) / f64::from(PLANES)) * section.normal,
+            ..section
+        });
+        let ways = turned.filter_map(|section| section.way(model, from, along, goal));
+        ways.min_by(|a, b| a.length.total_cmp(&b.length))
+    })
 }
 
 /// The way from an end of a curve to a border, on from its last segment.
