@@ -46,6 +46,7 @@
 mod bending;
 mod command;
 mod crease;
+mod cut;
 mod document;
 mod ease;
 mod editor;
@@ -73,6 +74,7 @@ mod workspace;
 
 pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
+pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
     Access, Animation, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid, HANDLE_COLOURS,
     HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape,
@@ -103,7 +105,7 @@ pub use scene_view::{ControlPoints, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
-pub use stitching::{CutPlane, KeptSide, MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
+pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

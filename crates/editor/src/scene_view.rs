@@ -8,10 +8,11 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
+use crate::cut::CutStroke;
 use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
-use crate::stitching::{KeptSide, MergeSettings};
+use crate::stitching::MergeSettings;
 use crate::tool::{
     BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -111,8 +112,8 @@ pub struct SceneView<'a> {
     pub wants_rim: Option<RimUse>,
     /// The rim under the pointer that the next click takes.
     pub rim: Option<&'a PointedRim>,
-    /// The side that is kept by the cut along the line that the next drag draws; `None` if it draws none.
-    pub wants_cut: Option<KeptSide>,
+    /// The line or curve along which the next drag cuts; `None` if it does not cut.
+    pub wants_cut: Option<CutStroke>,
     /// How parts are merged.
     pub merge: &'a MergeSettings,
     /// The change of the mesh that is under way, by the name of its step.

@@ -2,7 +2,7 @@
 
 use crate::jobs::{Activity, JobKind};
 use crate::region::Counts;
-use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_effect};
+use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_hint};
 use crate::view::View;
 use crate::workspace::{Workspace, selected_curve};
 
@@ -25,10 +25,7 @@ pub(crate) fn status(
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.or_else(|| settings.wants_rim.map(|wanted| rim_hint(wanted, rim)));
-    let now = now.or_else(|| {
-        let effect = cut_effect(settings.wants_cut?);
-        Some(format!("Drag a line across the shape. {effect}"))
-    });
+    let now = now.or_else(|| settings.wants_cut.map(cut_hint));
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
     let parts = [

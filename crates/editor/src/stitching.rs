@@ -9,6 +9,7 @@ use glam::DVec3;
 use pliant_deform::{Budget, Method};
 use pliant_mesh::{Cancel, Cancelled, Model, SurfaceVertex};
 
+use crate::cut::{CutCurve, CutPlane, KeptSide};
 use crate::document::{Document, HandleId, Matching};
 use crate::format::Placement;
 use crate::former::Former;
@@ -27,6 +28,8 @@ pub enum MeshChange {
     Delete(Vec<SurfaceVertex>),
     /// Cuts along a plane. These vertices are spared, which are all those of some connected parts.
     Cut(CutPlane, KeptSide, Vec<SurfaceVertex>),
+    /// Cuts along a curve on the present surface; these vertices are spared in the same way.
+    CutAlong(CutCurve, KeptSide, Vec<SurfaceVertex>),
     /// Puts another file of this name beside the shape. The caller knows the file.
     Append(String),
     /// Joins a part to the others.
@@ -78,30 +81,9 @@ impl MeshChange {
             Self::FillAt(_) => "Fill hole",
             Self::Bridge(_) => "Bridge borders",
             Self::Delete(_) => "Delete region",
-            Self::Cut(..) => "Cut",
+            Self::Cut(..) | Self::CutAlong(..) => "Cut",
         }
     }
-}
-
-/// A plane: the points p with `normal` · p = `distance`, in world units. The normal may have any length.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct CutPlane {
-    /// The normal.
-    pub normal: DVec3,
-    /// The distance along it.
-    pub distance: f64,
-}
-
-/// The side of a plane that a cut keeps.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum KeptSide {
-    /// The side to which the normal points.
-    #[default]
-    Positive,
-    /// The other one.
-    Negative,
-    /// Both: the surface only gets edges along the plane.
-    Both,
 }
 
 /// A change of the mesh, to be made off the thread that handles events.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pliant_editor::{Beginning, EditError, EditFile, JoinsFile, Selector};
+use pliant_editor::{Beginning, CutCurve, EditError, EditFile, JoinsFile, Selector};
 use serde_json::Value;
 
 use crate::watch::Watch;
@@ -75,6 +75,17 @@ impl Given {
         match self {
             Self::File(path) => stitching::read_selector(path, watch),
             Self::Contents(contents, _) => Selector::parse(&contents.to_string()).map_err(|error| self.refused(error)),
+        }
+    }
+
+    /// The curve of a cut.
+    ///
+    /// # Errors
+    /// A file that can't be read, or no curve.
+    pub fn cut_curve(&self, watch: &Watch) -> Result<CutCurve, EngineError> {
+        match self {
+            Self::File(path) => stitching::read_cut_curve(path, watch),
+            Self::Contents(contents, _) => CutCurve::parse(&contents.to_string()).map_err(|error| self.refused(error)),
         }
     }
 

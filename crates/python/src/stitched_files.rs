@@ -88,7 +88,7 @@ pub fn bridge(
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/cut.txt"))]
 #[pyfunction]
-#[pyo3(signature = (file, *, output, delete=None, plane=None, keep="positive", report=None, weld=None))]
+#[pyo3(signature = (file, *, output, delete=None, plane=None, curve=None, keep="positive", report=None, weld=None))]
 #[expect(clippy::too_many_arguments, reason = "they are the command's arguments, by name")]
 pub fn cut<'py>(
     py: Python<'py>,
@@ -96,6 +96,7 @@ pub fn cut<'py>(
     output: PathBuf,
     delete: Option<&Bound<'py, PyAny>>,
     plane: Option<[f64; 4]>,
+    curve: Option<&Bound<'py, PyAny>>,
     keep: &str,
     report: Option<PathBuf>,
     weld: Option<f64>,
@@ -111,12 +112,19 @@ pub fn cut<'py>(
         Plane::of(DVec3::new(x, y, z), level)
             .ok_or_else(|| refused("plane is (nx, ny, nz, d): its normal has no direction, or a number is not finite"))
     });
-    match (delete, plane.transpose()?) {
-        (None, Some(plane)) => run(py, |watch| {
+    match (delete, plane.transpose()?, curve) {
+        (None, Some(plane), None) => run(py, |watch| {
             let along = CutAlong::Plane(plane, keep);
             stitching::cut(&Cut { remaking, along }, watch, &Staging::default())
         }),
-        (Some(delete), None) => {
+        (None, None, Some(curve)) => {
+            let curve = given(curve, "curve")?;
+            run(py, |watch| {
+                let along = CutAlong::Curve(&curve.cut_curve(watch)?, keep);
+                stitching::cut(&Cut { remaking, along }, watch, &Staging::default())
+            })
+        }
+        (Some(delete), None, None) => {
             let delete = given(delete, "delete")?;
             run(py, |watch| {
                 let selector = delete.selector(watch)?;
@@ -124,7 +132,7 @@ pub fn cut<'py>(
                 stitching::cut(&Cut { remaking, along }, watch, &Staging::default())
             })
         }
-        _ => Err(refused("give either delete or plane")),
+        _ => Err(refused("give one of delete, plane and curve")),
     }
 }
 

@@ -116,7 +116,7 @@ def test_a_refusal_writes_nothing_and_names_the_argument(files):
         ("output .* is the file that is read: give another name$", lambda: pliant.fill(bar_, output=bar_)),
         ("give largest or at, not both", lambda: pliant.fill(bar_, output=files / "x.off", largest=1, at=0)),
         ("at is -1: give the number of a vertex", lambda: pliant.fill(bar_, output=files / "x.off", at=-1)),
-        ("give either delete or plane", lambda: pliant.cut(bar_, output=files / "x.off")),
+        ("give one of delete, plane and curve", lambda: pliant.cut(bar_, output=files / "x.off")),
         ("its normal has no direction", lambda: pliant.cut(bar_, output=files / "x.off", plane=[0, 0, 0, 1])),
         ('keep takes "positive"', lambda: pliant.cut(bar_, output=files / "x.off", plane=[0, 1, 0, 1], keep="up")),
     ]:
@@ -149,6 +149,8 @@ def test_animate_and_sequence_write_the_command_line_s_bytes(program, files):
 def test_new_shapes_are_the_command_line_s(program, files):
     top = {"slab": {"axis": "y", "from": 0.8, "to": 1}}
     (files / "top.json").write_text(json.dumps(top))
+    ring = {"version": 1, "points": [[0.05, 0.4, 0.2], [-0.05, 0.45, 0.2], [0, 0.55, 0.2]], "closed": True}
+    (files / "ring.json").write_text(json.dumps(ring))
     (files / "joins.json").write_text(json.dumps({"version": 1}))
     bar_, half = files / "bar.off", files / "half.off"
     run(program, "cut", bar_, "--delete", files / "top.json", "--output", half)
@@ -162,6 +164,10 @@ def test_new_shapes_are_the_command_line_s(program, files):
         (
             ["cut", bar_, "--plane", "0,1,0,0.43", "--keep", "both"],
             lambda out: pliant.cut(bar_, plane=np.array([0, 1, 0, 0.43]), keep="both", output=out),
+        ),
+        (
+            ["cut", bar_, "--curve", files / "ring.json", "--keep", "negative"],
+            lambda out: pliant.cut(bar_, curve=ring, keep="negative", output=out),
         ),
         (["fill", bar_], lambda out: pliant.fill(bar_, output=out)),
         (["fill", bar_, "--largest", 1], lambda out: pliant.fill(bar_, largest=1, output=out)),

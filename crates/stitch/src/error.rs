@@ -77,6 +77,41 @@ pub enum StitchError {
         /// The highest.
         to: f64,
     },
+    /// A curve has too few points.
+    #[error("the curve has {found} points, but needs at least {least}: give more")]
+    CurveTooShort {
+        /// The number of points.
+        found: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// The ends of an open curve are on no border.
+    #[error(
+        "the curve begins or ends inside the surface, at point {point}: lead both ends to a border, or the last to the \
+         first"
+    )]
+    CurveEndsInside {
+        /// The number of the end, from 0.
+        point: usize,
+    },
+    /// No way along the surface follows the curve between two points.
+    #[error(
+        "the curve can't follow the surface from point {from} to the next one: lead it around borders, along one \
+         connected part, or put more points there"
+    )]
+    CurveLost {
+        /// The number of the first point, from 0.
+        from: usize,
+    },
+    /// A curve crosses itself, or runs back along itself.
+    #[error("the curve crosses itself or touches itself on the surface: draw it without crossing")]
+    CurveCrossesItself,
+    /// The surface beside both sides of a curve is in one piece.
+    #[error(
+        "the curve does not divide the surface, which goes on from its left to its right around it: keep both sides, or \
+         draw the curve around the part that goes"
+    )]
+    CurveDividesNothing,
     /// The cut has no vertex.
     #[error("the selection holds no vertex: select at least one")]
     NothingSelected,

@@ -27,6 +27,7 @@
 
 mod borders;
 mod crossing;
+mod curve;
 mod cut;
 mod dress;
 mod error;
@@ -34,10 +35,12 @@ mod fill;
 mod filled_shape;
 mod merge;
 mod part;
+mod pieces;
 mod plane;
 mod shape;
 
 pub use borders::{Border, Borders};
+pub use curve::{Sight, SurfaceCurve};
 pub use error::{BorderFault, StitchError};
 pub use fill::{Filled, FilledHole, Holes, Reason, Unfilled, fill};
 pub use merge::{Joins, MergeError, Merged, Pair, PartBending, PlacementOfB, Seam, merge};

@@ -7,11 +7,12 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use pliant_mesh::{DrawnVertex, FileVertex, SurfaceVertex};
+use pliant_mesh::{DrawnVertex, SurfaceVertex};
 
 use crate::error::StitchError;
 use crate::part::Part;
-use crate::shape::{Age, NewShape, TriangleSource, VertexSource};
+use crate::pieces::{Corner, CutPoint, Pieces};
+use crate::shape::{Age, NewShape, TriangleSource};
 
 /// A plane in world space.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -73,34 +74,14 @@ impl NewShape {
     }
 }
 
-/// A corner of a piece of a triangle.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Corner {
-    Old(DrawnVertex),
-    /// By its place among the cut points.
-    New(u32),
-}
-
-/// A point on an edge of a drawn triangle.
-struct CutPoint {
-    /// The ends, that of the lower surface vertex first.
-    ends: [DrawnVertex; 2],
-    /// The share of the edge before the point.
-    share: f64,
-    position: DVec3,
-    /// The number of its surface's edge.
-    edge: u32,
-}
-
 struct Cutting<'a> {
     part: &'a Part<'a>,
     keep: Keep,
     /// The distance of each surface vertex from the plane: 0 on it. A spared one counts as far on a kept side.
     distances: Vec<f64>,
-    points: Vec<CutPoint>,
+    pieces: Pieces,
     point_of: BTreeMap<[DrawnVertex; 2], u32>,
     edges: BTreeMap<[SurfaceVertex; 2], u32>,
-    pieces: Vec<([Corner; 3], TriangleSource)>,
 }
 
 impl<'a> Cutting<'a> {
@@ -135,10 +116,9 @@ impl<'a> Cutting<'a> {
             part,
             keep,
             distances,
-            points: Vec::new(),
+            pieces: Pieces::default(),
             point_of: BTreeMap::new(),
             edges: BTreeMap::new(),
-            pieces: Vec::new(),
         })
     }
 
@@ -168,7 +148,7 @@ impl<'a> Cutting<'a> {
         let (is_below, is_above) = (has(|distance| distance < 0.0), has(|distance| distance > 0.0));
         if !(is_below && is_above) {
             if self.keeps(!is_below) {
-                self.pieces.push((corners.map(Corner::Old), source(Age::Old)));
+                self.pieces.triangles.push((corners.map(Corner::Old), source(Age::Old)));
             }
             return;
         }
@@ -188,7 +168,7 @@ impl<'a> Cutting<'a> {
         for (outline, is_positive) in sides.iter().zip([true, false]) {
             if self.keeps(is_positive) {
                 for piece in self.triangles(outline) {
-                    self.pieces.push((piece, source(Age::New)));
+                    self.pieces.triangles.push((piece, source(Age::New)));
                 }
             }
         }
@@ -209,13 +189,14 @@ impl<'a> Cutting<'a> {
         let positions = &self.part.model.surface.positions;
         let count = self.edges.len() as u32;
         let edge = *self.edges.entry(on_surface).or_insert(count);
-        self.points.push(CutPoint {
-            ends,
-            share,
+        self.pieces.surface_points = self.edges.len();
+        self.pieces.points.push(CutPoint {
+            corners: [ends[0], ends[1], ends[1]],
+            shares: [share, 0.0],
             position: positions[on_surface[0].index()].lerp(positions[on_surface[1].index()], share),
-            edge,
+            on_surface: edge,
         });
-        let number = self.points.len() as u32 - 1;
+        let number = self.pieces.points.len() as u32 - 1;
         self.point_of.insert(ends, number);
         number
     }
@@ -223,7 +204,7 @@ impl<'a> Cutting<'a> {
     fn position(&self, corner: Corner) -> DVec3 {
         match corner {
             Corner::Old(vertex) => self.part.drawn.positions[vertex.index()],
-            Corner::New(point) => self.points[point as usize].position,
+            Corner::New(point) => self.pieces.points[point as usize].position,
         }
     }
 
@@ -242,64 +223,9 @@ impl<'a> Cutting<'a> {
         }
     }
 
-    /// The shape of all pieces.
+    /// The shape of all pieces. Vertices that no triangle used stay on the kept side.
     fn finished(self) -> NewShape {
-        let drawn = self.part.drawn;
-        let (mut was_used, mut is_used) = (vec![false; drawn.positions.len()], vec![false; drawn.positions.len()]);
-        drawn
-            .triangles
-            .iter()
-            .flatten()
-            .for_each(|corner| was_used[corner.index()] = true);
-        for (corners, _) in &self.pieces {
-            for corner in corners {
-                if let Corner::Old(vertex) = corner {
-                    is_used[vertex.index()] = true;
-                }
-            }
-        }
-        // Vertices that no triangle used stay on the kept side.
-        let stays = |v: usize| {
-            let distance = || self.distance(DrawnVertex(v as u32));
-            is_used[v] || (!was_used[v] && self.keeps(distance() >= 0.0))
-        };
-        let mut shape = NewShape::of_vertices(self.part, stays);
-        let number = shape.numbers(drawn.positions.len());
-        let first = shape.positions.len() as u32;
-        self.add_points(&mut shape);
-        let here = |corner: Corner| match corner {
-            Corner::Old(vertex) => number[vertex.index()],
-            Corner::New(point) => DrawnVertex(first + point),
-        };
-        for (corners, source) in &self.pieces {
-            shape.triangles.push(corners.map(here));
-            shape.triangle_sources.push(*source);
-        }
-        shape
-    }
-
-    /// Adds the cut points, with the numbers and normals between those of their ends.
-    fn add_points(&self, shape: &mut NewShape) {
-        let (first_file, attributes) = (shape.file_vertex_count as u32, &self.part.attributes);
-        for (row, point) in (0..).zip(&self.points) {
-            let vertex = DrawnVertex(shape.positions.len() as u32);
-            let between = |[from, to]: [f64; 2]| from + (to - from) * point.share;
-            let value = |channel| between(point.ends.map(|end| (attributes.value)(end, channel)));
-            shape.values.extend((0..attributes.width()).map(value));
-            shape.vertices.push(VertexSource::New {
-                part: 0,
-                like: point.ends[usize::from(point.share > 0.5)],
-                row,
-            });
-            shape.positions.push(point.position);
-            shape.file_vertices.push(FileVertex(first_file + point.edge));
-            if let Some(normal) = self.part.normals {
-                let [from, to] = point.ends.map(normal);
-                shape
-                    .normals
-                    .push((vertex, from.lerp(to, point.share).normalize_or_zero()));
-            }
-        }
-        shape.file_vertex_count += self.edges.len();
+        let is_kept = |vertex| self.keeps(self.distance(vertex) >= 0.0);
+        self.pieces.shape(self.part, is_kept)
     }
 }

@@ -18,7 +18,9 @@ use crate::window_rig::Session;
 use egui::{Key, Modifiers, vec2};
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
-use pliant_editor::{Command, CutPlane, HandleTransform, KeptSide, MergeSettings, MeshChange, Paint, Placement};
+use pliant_editor::{
+    Command, CutCurve, CutPlane, CutSight, HandleTransform, KeptSide, MergeSettings, MeshChange, Paint, Placement,
+};
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex, shapes};
 use pliant_tests::{Folder, bare_edit, open, run};
 
@@ -208,6 +210,21 @@ fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
         normal: DVec3::new(0.3, 1.0, -0.2),
         distance: 0.25,
     };
+    let ring = [
+        [0.4, 0.1, -0.9],
+        [-0.1, 0.45, -0.9],
+        [-0.4, -0.1, -0.9],
+        [0.1, -0.4, -0.9],
+    ];
+    let ring_file = folder.write(
+        "ring.json",
+        format!("{{\"version\": 1, \"points\": {ring:?}, \"closed\": true}}"),
+    );
+    let ring = CutCurve {
+        points: ring.map(DVec3::from_array).to_vec(),
+        is_closed: true,
+        sight: CutSight::Normals,
+    };
     let words = |words: &[&str]| words.iter().map(|word| OsString::from(*word)).collect::<Vec<_>>();
     let cut = |side, keep| {
         let command = words(&["cut", "--plane", "0.3,1,-0.2,0.25", "--keep", keep]);
@@ -217,6 +234,11 @@ fn cuts_and_bridges_are_the_command_lines_to_the_byte() {
         cut(KeptSide::Positive, "positive"),
         cut(KeptSide::Negative, "negative"),
         cut(KeptSide::Both, "both"),
+        (MeshChange::CutAlong(ring, KeptSide::Negative, Vec::new()), {
+            let mut command = words(&["cut", "--keep", "negative", "--curve"]);
+            command.push(ring_file.into_os_string());
+            command
+        }),
         (
             MeshChange::Bridge(ends),
             words(&["bridge", "--borders", &number(ends[0]), &number(ends[1])]),

@@ -41,12 +41,15 @@ pub(super) fn cut(arguments: &CutArguments, console: &mut Console<'_>) -> Result
     let watch = &console.watch;
     let delete = arguments.delete.as_deref();
     let selector = delete.map(|path| stitching::read_selector(path, watch)).transpose()?;
+    let curve = arguments.curve.as_deref();
+    let curve = curve.map(|path| stitching::read_cut_curve(path, watch)).transpose()?;
     let job = Cut {
         remaking: remaking(&arguments.file, &arguments.output)?,
-        along: match (&arguments.plane, selector.as_ref().zip(delete)) {
-            (Some(plane), _) => CutAlong::Plane(plane.0, arguments.keep.into()),
-            (None, Some((selector, path))) => CutAlong::Selector(selector, path),
-            (None, None) => return Err(EngineError::Arguments("give --delete or --plane".to_owned())),
+        along: match (&arguments.plane, &curve, selector.as_ref().zip(delete)) {
+            (Some(plane), _, _) => CutAlong::Plane(plane.0, arguments.keep.into()),
+            (None, Some(curve), _) => CutAlong::Curve(curve, arguments.keep.into()),
+            (None, None, Some((selector, path))) => CutAlong::Selector(selector, path),
+            (None, None, None) => return Err(EngineError::Arguments("give --delete, --plane or --curve".to_owned())),
         },
     };
     let (watch, staging) = (&console.watch, &console.staging);

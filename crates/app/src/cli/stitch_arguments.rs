@@ -58,17 +58,20 @@ pub(crate) struct CutArguments {
     #[arg(
         long,
         value_name = "SELECTOR.json",
-        required_unless_present = "plane",
-        conflicts_with = "plane"
+        required_unless_present_any = ["plane", "curve"],
+        conflicts_with_all = ["plane", "curve"]
     )]
     pub delete: Option<PathBuf>,
     /// Cut along the plane of the points p with (NX, NY, NZ) · p = D, in world units, and split the triangles that it
     /// crosses
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     pub plane: Option<PlaneArgument>,
-    /// The side of the plane to keep: the one to which (NX, NY, NZ) points, the other, or both, whose triangles are only
-    /// split
-    #[arg(long, value_enum, default_value_t = KeepArgument::Positive, requires = "plane")]
+    /// Cut along a curve on the surface, and split the triangles under it
+    #[arg(long, value_name = "CURVE.json", conflicts_with = "plane")]
+    pub curve: Option<PathBuf>,
+    /// The side to keep: the one to which (NX, NY, NZ) points, or to the left of the curve seen along it from outside;
+    /// the other; or both, whose triangles are only split
+    #[arg(long, value_enum, default_value_t = KeepArgument::Positive, conflicts_with = "delete")]
     pub keep: KeepArgument,
     /// The output file and report, and the computation.
     #[command(flatten)]

@@ -3,8 +3,9 @@
 use pliant_mesh::SurfaceVertex;
 
 use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
+use crate::cut::{CutStroke, KeptSide};
 use crate::document::Paint;
-use crate::stitching::{KeptSide, MergeSettings, MeshChange, REACH_RANGE};
+use crate::stitching::{MergeSettings, MeshChange, REACH_RANGE};
 use crate::tool::{Context, RimUse};
 use crate::workspace::{held_parts, merge_held, mirror_held, stitch};
 
@@ -126,11 +127,43 @@ pub(super) const CUT: Entry<KeptSide> = Entry {
     ],
     scope: Scope::Document,
     unavailable: when_mesh_may_change,
-    action: Action::Do(|context, kept| {
-        context.settings.want_nothing();
-        context.settings.wants_cut = Some(kept);
-    }),
+    action: Action::Do(|context, kept| want_cut(context, CutStroke::Line(kept))),
 };
+
+/// Cuts along the curve on the surface that the next drag draws.
+pub(super) const CUT_ALONG_CURVE: Entry<KeptSide> = Entry {
+    listed: &[
+        item(
+            KeptSide::Positive,
+            "Cut along a curve",
+            "Deletes the part to the right of the curve that you draw next on the surface, seen along it.",
+            "lasso outline trim knife loop",
+            &[],
+        ),
+        item(
+            KeptSide::Negative,
+            "Cut along a curve, the left",
+            "Deletes the part to the left of the curve that you draw next on the surface, seen along it.",
+            "lasso outline trim knife loop",
+            &[],
+        ),
+        item(
+            KeptSide::Both,
+            "Add edges along a curve",
+            "Splits the triangles along the curve that you draw next on the surface, and deletes nothing.",
+            "knife divide both loop",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: when_mesh_may_change,
+    action: Action::Do(|context, kept| want_cut(context, CutStroke::Curve(kept))),
+};
+
+fn want_cut(context: &mut Context<'_>, wanted: CutStroke) {
+    context.settings.want_nothing();
+    context.settings.wants_cut = Some(wanted);
+}
 
 /// Changes the mesh.
 pub(super) const CHANGE_MESH: Entry<MeshChange> = Entry {

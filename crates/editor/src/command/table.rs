@@ -12,12 +12,13 @@ use super::{
     animation, controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform,
     view,
 };
+use crate::cut::KeptSide;
 use crate::document::{
     FlowOptions, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
-use crate::stitching::{KeptSide, MergeSettings, MeshChange};
+use crate::stitching::{MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -370,6 +371,8 @@ commands! {
     DeleteRegion = mesh::DELETE_REGION;
     /// Cuts along the line that the next drag draws; the positive side is to its left, seen along it.
     CutAlongLine(kept: KeptSide) = mesh::CUT;
+    /// Cuts along the curve on the surface that the next drag draws; the positive side is to its left, seen along it.
+    CutAlongCurve(kept: KeptSide) = mesh::CUT_ALONG_CURVE;
     /// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
     MirrorPart(axis: usize) = mesh::MIRROR_PART;
     /// Joins the part that the selected handle holds to the others, at the nearest borders.

@@ -8,6 +8,7 @@
 mod attachment;
 mod beginning;
 mod curve;
+mod cut_curve;
 mod document_keys;
 mod edit_error;
 mod edit_file;

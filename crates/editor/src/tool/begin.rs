@@ -7,6 +7,7 @@ use super::control_box::ControlBox;
 use super::correct;
 use super::crease_stroke::CreaseStroke;
 use super::curve_stroke::CurveStroke;
+use super::cut_curve::CutCurveStroke;
 use super::cut_line::CutLine;
 use super::flow_stroke::FlowStroke;
 use super::gesture::Gesture;
@@ -22,6 +23,7 @@ use super::stiffness::StiffnessStroke;
 use super::taken_handle::is_taken_along;
 use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
+use crate::cut::CutStroke;
 use crate::document::Paint;
 use crate::input::{Button, Pointer};
 use crate::stitching::MeshChange;
@@ -41,10 +43,13 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         }
         Button::Primary
             if !modifiers.alt
-                && let Some(kept) = context.settings.wants_cut =>
+                && let Some(stroke) = context.settings.wants_cut =>
         {
             context.workspace.refusal = None;
-            return Some(Box::new(CutLine::begin(context.workspace, pointer, kept)));
+            return Some(match stroke {
+                CutStroke::Line(kept) => Box::new(CutLine::begin(context.workspace, pointer, kept)),
+                CutStroke::Curve(kept) => Box::new(CutCurveStroke::begin(context.workspace, pointer, kept)),
+            });
         }
         Button::Primary
             if !modifiers.alt

@@ -6,8 +6,9 @@ use super::flow_brush::FlowBrush;
 use super::mode::{Depth, StrokeShape, ToolMode};
 use super::rim::RimUse;
 use super::stiffness_brush::{StiffnessAction, StiffnessBrush};
+use crate::cut::CutStroke;
 use crate::document::{HandleId, Paint};
-use crate::stitching::{KeptSide, MergeSettings};
+use crate::stitching::MergeSettings;
 use crate::view::{GizmoMode, GizmoOrientation};
 
 /// The tool, its brushes and the gizmo.
@@ -36,8 +37,8 @@ pub(crate) struct ToolSettings {
     pub(crate) wants_pivot: bool,
     /// The use of the rim that the next click takes.
     pub(crate) wants_rim: Option<RimUse>,
-    /// The side that is kept by the next drag, which draws a line along which the surface is cut.
-    pub(crate) wants_cut: Option<KeptSide>,
+    /// The line or curve that the next drag draws, along which the surface is cut.
+    pub(crate) wants_cut: Option<CutStroke>,
     /// How parts are merged.
     pub(crate) merge: MergeSettings,
 }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_editor::{Button, Command, Event, KeptSide, Key, MeshChange, Modifiers, Pointer, RimUse, ToolMode};
+use pliant_editor::{
+    Button, Command, CutCurve, CutSight, Event, KeptSide, Key, MeshChange, Modifiers, Pointer, RimUse, ToolMode,
+};
 use pliant_mesh::{SurfaceVertex, shapes};
 
 use crate::rig::new_mesh::{bowl, open_shapes, used};
@@ -193,4 +195,71 @@ fn a_bridge_takes_two_rims_and_esc_gives_the_first_one_up() {
         };
         assert!(rims[0].contains(&a) && rims[1].contains(&b));
     }
+}
+
+/// Draws along points over the view, and gives the curve along which the shape is cut.
+fn curve_of(rig: &mut Rig, kept: KeptSide, way_px: &[DVec2]) -> (CutCurve, KeptSide) {
+    rig.command(Command::CutAlongCurve(kept));
+    rig.swipe(way_px);
+    match rig.editor.take_stitch().unwrap().change {
+        MeshChange::CutAlong(curve, side, _) => (curve, side),
+        change => panic!("{change:?}"),
+    }
+}
+
+#[test]
+fn a_curve_over_the_shape_is_drawn_onto_it_and_closed_where_it_comes_back() {
+    for is_parallel in [false, true] {
+        // The second one crosses itself before it ends.
+        for turns in [0.99, 1.1] {
+            let mut rig = Rig::open(bowl());
+            if is_parallel {
+                rig.command(Command::ToggleProjection);
+            }
+            let at = |step: i32| {
+                let share = turns * f64::from(step) / 60.0;
+                let out = 60.0 + 8.0 * (10.0 * share.min(turns - share)).min(1.0);
+                CENTRE_PX + out * DVec2::from_angle(std::f64::consts::TAU * share)
+            };
+            let way: Vec<DVec2> = (0..=60).map(at).collect();
+            let (curve, side) = curve_of(&mut rig, KeptSide::Both, &way);
+            assert!(curve.is_closed && side == KeptSide::Both && curve.points.len() > 8);
+            assert_eq!(matches!(curve.sight, CutSight::Along(_)), is_parallel);
+            assert!(rig.editor.view().wants_cut.is_none(), "one drag, one cut");
+            let camera = *rig.editor.view().camera;
+            for point in &curve.points {
+                let px = camera.project(*point, VIEWPORT_PX).unwrap();
+                let beside = way.iter().map(|other| other.distance(px)).fold(f64::INFINITY, f64::min);
+                assert!(beside < 8.0, "{beside} px from the line");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_curve_across_a_limb_goes_on_behind_it_and_one_across_a_sheet_ends_at_its_borders() {
+    let across = [-1.0, 1.0].map(|side| CENTRE_PX + DVec2::new(side * 390.0, 10.0 * side));
+    let way: Vec<DVec2> = (0..=80)
+        .map(|step| across[0].lerp(across[1], f64::from(step) / 80.0))
+        .collect();
+    let mut rig = Rig::open(shapes::icosphere(3));
+    let (curve, side) = curve_of(&mut rig, KeptSide::Positive, &way);
+    assert!(curve.is_closed && side == KeptSide::Positive);
+    let forward = rig.editor.view().camera.forward();
+    let behind = curve.points.iter().filter(|point| point.dot(forward) > 0.3).count();
+    assert_eq!(behind, 3);
+    let mut rig = Rig::open(shapes::grid(16, 16));
+    let (curve, _) = curve_of(&mut rig, KeptSide::Positive, &way);
+    assert!(!curve.is_closed && curve.points.len() >= 2);
+    // A click draws no curve, and says so.
+    let mut rig = Rig::open(bowl());
+    rig.command(Command::CutAlongCurve(KeptSide::Positive));
+    rig.swipe(&[CENTRE_PX, CENTRE_PX + DVec2::X]);
+    assert!(rig.editor.take_stitch().is_none());
+    assert!(
+        rig.editor
+            .view()
+            .problem
+            .is_some_and(|problem| problem.contains("too short"))
+    );
 }

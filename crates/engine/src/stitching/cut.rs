@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use pliant_editor::Selector;
-use pliant_stitch::{Age, Keep, NewShape, Plane, VertexSource};
+use pliant_editor::{CutCurve, CutSight, Selector};
+use pliant_stitch::{Age, Keep, NewShape, Plane, Sight, SurfaceCurve, VertexSource};
 use serde_json::json;
 
 use super::look::{Channels, Dressed, Source};
@@ -32,6 +32,8 @@ pub enum CutAlong<'a> {
     Selector(&'a Selector, &'a Path),
     /// A plane; triangles that it crosses are split.
     Plane(Plane, Keep),
+    /// A curve on the surface; triangles under it are split.
+    Curve(&'a CutCurve, Keep),
 }
 
 /// Cuts a file and writes the result beside its place.
@@ -44,7 +46,7 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
     } = job.remaking;
     job.remaking.check_paths()?;
     let [loaded] = job.remaking.load([file], watch)?;
-    let deleted;
+    let (deleted, curve);
     let by = match job.along {
         CutAlong::Selector(selector, place) => {
             let of_selector = |source| EngineError::Edit {
@@ -56,6 +58,10 @@ pub fn cut(job: &Cut<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched, 
             CutBy::Deleted(&deleted)
         }
         CutAlong::Plane(plane, keep) => CutBy::Plane(plane, keep, &[]),
+        CutAlong::Curve(given, keep) => {
+            curve = on_surface(given);
+            CutBy::Curve(&curve, keep, &[])
+        }
     };
     let CutFile { made, left, gone } = cut_file(&loaded, by, output, report, watch)?;
     let stitched = job.remaking.stage(
@@ -84,6 +90,21 @@ pub(super) enum CutBy<'a> {
     Deleted(&'a [bool]),
     /// A plane, and a flag for each surface vertex that is spared.
     Plane(Plane, Keep, &'a [bool]),
+    /// A curve on the surface, and the same flags.
+    Curve(&'a SurfaceCurve, Keep, &'a [bool]),
+}
+
+/// A curve as the surface is cut along it.
+pub(super) fn on_surface(curve: &CutCurve) -> SurfaceCurve {
+    SurfaceCurve {
+        points: curve.points.clone(),
+        is_closed: curve.is_closed,
+        sight: match curve.sight {
+            CutSight::Normals => Sight::Normals,
+            CutSight::From(eye) => Sight::From(eye),
+            CutSight::Along(direction) => Sight::Along(direction),
+        },
+    }
 }
 
 /// A file without a part.
@@ -108,6 +129,7 @@ pub(super) fn cut_file(
     let channels = Channels::of(&sources);
     let shape = sources[0].with_part(channels, |part| match by {
         CutBy::Plane(plane, keep, spared) => NewShape::cut_along(part, &plane, keep, spared),
+        CutBy::Curve(curve, keep, spared) => NewShape::cut_along_curve(part, curve, keep, spared),
         CutBy::Deleted(flags) => NewShape::cut(part, flags),
     });
     let mut shape = shape.map_err(|error| refused(&loaded.path, error))?;
@@ -143,6 +165,19 @@ pub fn read_selector(path: &Path, watch: &Watch) -> Result<Selector, EngineError
     watch.note_read("--delete", path);
     let selector = Selector::parse(&files::read_text(path)?);
     selector.map_err(|source| EngineError::Edit {
+        edit: path.to_owned(),
+        source,
+    })
+}
+
+/// Reads the file of the curve of a cut.
+///
+/// # Errors
+/// A file that can't be read, or no curve, naming the file.
+pub fn read_cut_curve(path: &Path, watch: &Watch) -> Result<CutCurve, EngineError> {
+    watch.note_read("--curve", path);
+    let curve = CutCurve::parse(&files::read_text(path)?);
+    curve.map_err(|source| EngineError::Edit {
         edit: path.to_owned(),
         source,
     })

@@ -26,7 +26,7 @@ use crate::watch::Watch;
 use look::Dressed;
 use shape_report::Change;
 
-pub use cut::{Cut, CutAlong, cut, read_selector};
+pub use cut::{Cut, CutAlong, cut, read_cut_curve, read_selector};
 pub use fill::{Fill, fill};
 pub use merge::{Merge, merge, read_joins};
 pub use pliant_stitch::{Holes, Keep, Plane};

@@ -11,7 +11,7 @@ use pliant_mesh::{Progress, SurfaceVertex};
 use pliant_stitch::{Holes, Joins, Keep, NewShape, Pair, Plane, VertexSource};
 
 use super::append::appended;
-use super::cut::{CutBy, cut_file};
+use super::cut::{CutBy, cut_file, on_surface};
 use super::fill::filled;
 use super::look::Source;
 use super::merge::{merged, placement};
@@ -80,6 +80,11 @@ pub fn remake(
             let by = cut_by(*plane, *side, &spared)?;
             cut_file(loaded, by, &path, ReportTo::Caller, watch)?.made
         }
+        MeshChange::CutAlong(curve, side, spared) => {
+            let (curve, spared) = (on_surface(curve), flags(present, spared, loaded));
+            let by = CutBy::Curve(&curve, kept(*side), &spared);
+            cut_file(loaded, by, &path, ReportTo::Caller, watch)?.made
+        }
         MeshChange::Append(name) => {
             let missing = || EngineError::Arguments(format!("{name} was not read: append it again"));
             let second = second.ok_or_else(missing)?;
@@ -108,12 +113,15 @@ fn cut_by(plane: CutPlane, side: KeptSide, spared: &[bool]) -> Result<CutBy<'_>,
     let plane = Plane::of(plane.normal, plane.distance).ok_or_else(|| {
         EngineError::Arguments("the plane has no direction: draw a longer line across the shape".to_owned())
     })?;
-    let keep = match side {
+    Ok(CutBy::Plane(plane, kept(side), spared))
+}
+
+fn kept(side: KeptSide) -> Keep {
+    match side {
         KeptSide::Positive => Keep::Positive,
         KeptSide::Negative => Keep::Negative,
         KeptSide::Both => Keep::Both,
-    };
-    Ok(CutBy::Plane(plane, keep, spared))
+    }
 }
 
 /// Joins the parts of the open file that a change calls B to the others. `now` is the file in its present shape; the

@@ -395,17 +395,21 @@ def cut(
     output: File,
     delete: FileOrMembers | None = None,
     plane: Sequence[float] | None = None,
+    curve: FileOrMembers | None = None,
     keep: Literal["positive", "negative", "both"] = "positive",
     report: File | None = None,
     weld: float | None = None,
 ) -> dict[str, Any]:
-    """Cuts a part out of a file, like `pliant cut`. Give either `delete` or `plane`.
+    """Cuts a part out of a file, like `pliant cut`. Give one of `delete`, `plane` and `curve`.
 
     :param file: the file to cut.
     :param output: the file to write; it can't be the file that is read.
     :param delete: the vertices to delete: the path of a file with a selector, or a dict such as {"vertices": [0, 1]}.
     :param plane: the numbers (nx, ny, nz, d) of the plane of the points p with (nx, ny, nz) . p = d, in world units.
-    :param keep: the side of the plane to keep: the one to which (nx, ny, nz) points, the other, or both.
+    :param curve: a curve on the surface: the path of a file, or a dict such as {"version": 1, "points": [[0, 0, 1], ...],
+        "closed": True}.
+    :param keep: the side to keep: the one to which (nx, ny, nz) points, or to the left of the curve, seen from outside
+        along it; the other; or both.
     :param report: the file for the report.
     :param weld: the distance within which vertices are joined, as in `load`.
     :return: the report: `vertices_deleted`, `triangles_deleted`, `triangles_split`, `warnings` and so on. The warnings

@@ -196,6 +196,8 @@ fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Command::CutAlongLine(KeptSide::Positive),
             Command::CutAlongLine(KeptSide::Negative),
             Command::CutAlongLine(KeptSide::Both),
+            Command::CutAlongCurve(KeptSide::Positive),
+            Command::CutAlongCurve(KeptSide::Both),
         ],
     ];
     command_groups(ui, editor, &groups, commands);

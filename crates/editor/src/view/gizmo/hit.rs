@@ -48,7 +48,8 @@ fn is_inside(p: DVec2, a: DVec2, b: DVec2, c: DVec2) -> bool {
     sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
 }
 
-fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+/// The distance of a point from a segment.
+pub(crate) fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let length_squared = along.length_squared();
     let t = if length_squared > 0.0 {

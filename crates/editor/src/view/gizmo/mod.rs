@@ -7,6 +7,7 @@ mod shapes;
 
 use glam::{DQuat, DVec3};
 
+pub(crate) use self::hit::distance_to_segment;
 pub use self::hit::hit_gizmo;
 pub use self::shapes::gizmo_shapes;
 use super::camera::Camera;
