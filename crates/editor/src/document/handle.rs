@@ -136,11 +136,11 @@ impl Handle {
         self.transform = transform;
     }
 
-    /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest, or on the
-    /// whole sketch.
+    /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest and its
+    /// crease, or on the whole sketch.
     pub(crate) fn line_binds_as(&self, other: &Self) -> bool {
         match (&self.line, &other.line) {
-            (Some(HandleLine::Curve(own)), Some(HandleLine::Curve(other))) => own.rest() == other.rest(),
+            (Some(HandleLine::Curve(own)), Some(HandleLine::Curve(other))) => own.binds_as(other),
             (own, other) => own == other,
         }
     }

@@ -12,6 +12,7 @@ mod context;
 mod control_box;
 mod correct;
 mod correction_brush;
+mod crease_stroke;
 mod curve_stroke;
 mod cut_line;
 mod drawn_path;

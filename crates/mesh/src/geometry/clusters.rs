@@ -19,13 +19,18 @@ pub(super) struct Clusters {
     count: usize,
 }
 
+/// The place in a list of each of a surface's vertices, `u32::MAX` for those that are not in it; the list has each once.
+pub(super) fn places_of(vertices: &[SurfaceVertex], vertex_count: usize) -> Vec<u32> {
+    let mut places = vec![NONE; vertex_count];
+    for (place, v) in (0..).zip(vertices) {
+        places[v.index()] = place;
+    }
+    places
+}
+
 impl Neighbours {
-    /// Those of some vertices of a surface, each listed once, among these.
-    pub(super) fn among(vertices: &[SurfaceVertex], topology: &Topology) -> Self {
-        let mut places = vec![NONE; topology.vertex_count()];
-        for (place, v) in (0..).zip(vertices) {
-            places[v.index()] = place;
-        }
+    /// Those of some vertices of a surface among these: `places` are those of [`places_of`].
+    pub(super) fn among(vertices: &[SurfaceVertex], topology: &Topology, places: &[u32]) -> Self {
         let others = |vertex: &SurfaceVertex| topology.neighbours(*vertex).iter().map(|v| places[v.index()]);
         Self::of(
             vertices
@@ -132,7 +137,8 @@ mod tests {
         for (class, drawn) in shapes::classes() {
             let model = shapes::model(drawn);
             let vertices: Vec<SurfaceVertex> = (0..model.surface.positions.len() as u32).map(SurfaceVertex).collect();
-            let fine = Neighbours::among(&vertices, &model.topology);
+            let places = places_of(&vertices, vertices.len());
+            let fine = Neighbours::among(&vertices, &model.topology, &places);
             let (clusters, coarse) = fine.clusters();
             assert!(clusters.count < vertices.len() || fine.all.is_empty(), "{class}");
             let alike = clusters.means(&vec![DVec3::ONE; vertices.len()]);

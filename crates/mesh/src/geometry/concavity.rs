@@ -1,33 +1,11 @@
 //! The concavity of a surface at a scale: how fast its smoothed normals turn towards each other.
 //!
-//! Parts of a shape end in concave creases, by the minima rule of human vision [HR84]. Scans have such creases at every
-//! size, down to their noise, so the normals are smoothed first: (1 − σ² Δ) N = n, with n the normals of the vertices and
-//! Δ the mean of the neighbours less the vertex, over a quarter of its mean squared edge. Chebyshev's semi-iteration
-//! [GV61] solves this in some σ/h rounds, h an edge's length, where repeated averages would take (σ/h)². On a fine mesh it
-//! is solved on clusters of vertices first, whose distances are still a fraction of σ.
+//! Parts of a shape end in concave creases, by the minima rule of human vision [HR84].
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use super::clusters::Neighbours;
+use super::smooth_normals::SomeVertices;
 use crate::{SurfaceVertex, Topology};
-
-/// Rounds of the iteration over the square root of the largest weight of the neighbours. The error falls to less than a
-/// hundredth, 1/cosh(4 √2): what is left of it alternates in sign, so it would show as creases beside each edge.
-const ROUNDS: f64 = 4.0;
-
-/// A scale of more edges than this, in the mean, begins with normals that are smoothed on clusters of vertices.
-const MOST_EDGES: f64 = 4.0;
-
-/// Averages that smooth the steps between clusters, which are some three edges wide.
-const CLUSTER_ROUNDS: usize = 8;
-
-/// The largest weight of the neighbours, which bounds the rounds to 80: where edges are short for their mesh, the scale is
-/// at most ten of them.
-const MOST_WEIGHT: f64 = 400.0;
-
-/// Vertices that one thread takes at a time, at least.
-const PIECE: usize = 1 << 12;
 
 /// The concavity of the surface at each of some vertices, in radians per world unit: the largest rate over its edges at
 /// which the normals, smoothed over the length `scale`, turn towards each other; 0 where the surface is flat or convex.
@@ -39,78 +17,18 @@ pub fn concavities(
     vertices: &[SurfaceVertex],
     scale: f64,
 ) -> Vec<f64> {
-    let normal = |vertex: &SurfaceVertex| {
-        let faces = topology.faces(*vertex, triangles);
-        let corners = faces.map(|face| triangles[face as usize].map(|v| positions[v.index()]));
-        let areas = corners.map(|[a, b, c]| (b - a).cross(c - a));
-        areas.sum::<DVec3>().normalize_or_zero()
-    };
-    let normals: Vec<DVec3> = vertices.par_iter().with_min_len(PIECE).map(normal).collect();
-    let points: Vec<DVec3> = vertices.iter().map(|v| positions[v.index()]).collect();
-    let neighbours = Neighbours::among(vertices, topology);
-    let smooth = smoothed(&points, &normals, &neighbours, scale);
+    let some = SomeVertices::of(topology, positions, vertices);
+    let smooth = some.normals(triangles, scale);
     let concavity = |place: usize| {
-        let rate = |&other: &u32| {
-            let edge = points[other as usize] - points[place];
-            (smooth[place] - smooth[other as usize]).dot(edge) / edge.length_squared()
+        let (here, normal) = (some.position(place), smooth[place]);
+        let rate = |other: usize| {
+            let edge = some.position(other) - here;
+            (normal - smooth[other]).dot(edge) / edge.length_squared()
         };
         // `max` leaves out NaN, of edges without a length.
-        neighbours.at(place).iter().map(rate).fold(0.0, f64::max)
+        some.neighbours(place).map(rate).fold(0.0, f64::max)
     };
-    of_each(&points).map(concavity).collect()
-}
-
-fn of_each(points: &[DVec3]) -> impl IndexedParallelIterator<Item = usize> {
-    (0..points.len()).into_par_iter().with_min_len(PIECE)
-}
-
-/// The unit normals N with (1 + w) N − w `mean`(N) = n, nearly: n are the normals, and w the weights of the neighbours.
-fn smoothed(points: &[DVec3], normals: &[DVec3], neighbours: &Neighbours, scale: f64) -> Vec<DVec3> {
-    let weight = |place: usize| {
-        let others = neighbours.at(place).iter();
-        let squares = others.map(|&other| points[place].distance_squared(points[other as usize]));
-        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-        // Without neighbours, or at one point with them, nothing is smoothed.
-        let weight = 4.0 * scale * scale * count / sum;
-        if weight.is_finite() {
-            weight.min(MOST_WEIGHT)
-        } else {
-            0.0
-        }
-    };
-    let weights: Vec<f64> = of_each(points).map(weight).collect();
-    let most = weights.iter().copied().fold(0.0, f64::max);
-    // The largest factor by which an average shrinks an error.
-    let mut shrinks = most / (1.0 + most);
-    let mut rounds = (ROUNDS * most.sqrt()).ceil() as usize;
-    let mut present = normals.to_vec();
-    if scale * scale > MOST_EDGES * MOST_EDGES * neighbours.mean_squared_edge(points) {
-        let (clusters, coarse) = neighbours.clusters();
-        let means = smoothed(&clusters.means(points), &clusters.means(normals), &coarse, scale);
-        // Averages alone settle the steps between clusters.
-        (present, rounds, shrinks) = (clusters.spread(&means), CLUSTER_ROUNDS, 0.0);
-    }
-    let mut before = present.clone();
-    let mut ahead = 1.0;
-    for round in 0..rounds {
-        let places = before.par_iter_mut().with_min_len(PIECE).enumerate();
-        // The next normal takes the place of the one before.
-        places.for_each(|(place, normal)| {
-            let share = weights[place] / (1.0 + weights[place]);
-            let averaged = normals[place].lerp(neighbours.mean(&present, place), share);
-            *normal += (averaged - *normal) * ahead;
-        });
-        std::mem::swap(&mut before, &mut present);
-        ahead = match round {
-            0 => 1.0 / (1.0 - 0.5 * shrinks * shrinks),
-            _ => 1.0 / (1.0 - 0.25 * shrinks * shrinks * ahead),
-        };
-    }
-    present
-        .par_iter_mut()
-        .with_min_len(PIECE)
-        .for_each(|normal| *normal = normal.normalize_or_zero());
-    present
+    some.each(concavity)
 }
 
 #[cfg(test)]

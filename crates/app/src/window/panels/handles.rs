@@ -7,7 +7,7 @@ use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
 
-use super::bend;
+use super::{bend, crease};
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::number_field::{DEGREES, LENGTHS, Unit, dragged, number_field};
@@ -193,6 +193,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
             depth(ui, editor, handle, commands);
             parent(ui, editor, handle, commands);
             bend::show(ui, editor, commands);
+            crease::show(ui, editor, commands);
         });
 }
 
