@@ -67,7 +67,7 @@ impl DrawnPath {
     }
 
     fn length_px(&self) -> f64 {
-        self.points_px.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+        length_px(&self.points_px)
     }
 
     /// The line as an outline, which is closed: the way back covers the line that would close it.

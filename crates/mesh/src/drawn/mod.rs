@@ -32,7 +32,8 @@ pub struct Drawn {
     pub positions: Vec<DVec3>,
     /// Triangles over drawn vertices; every id is in range.
     pub triangles: Vec<[DrawnVertex; 3]>,
-    /// Lines between two drawn vertices each, which are shown but not solved for; every id is in range.
+    /// Lines between two drawn vertices each, which are shown but not solved for; every id is in range. A line from a
+    /// vertex to itself is a point. A vertex of no triangle, line or point is not shown, unless there is no triangle.
     pub lines: Vec<[DrawnVertex; 2]>,
     /// The file vertex behind each drawn vertex.
     pub file_vertex: Vec<FileVertex>,

@@ -258,8 +258,7 @@ impl Gathering<'_> {
     ) -> Result<(), Fault> {
         let corner_count = corner_count(self.document, primitive, vertex_count)?;
         match mode {
-            Mode::Points => {}
-            Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
                 spend(&mut self.budget, corner_count, size_of::<[DrawnVertex; 2]>(), "lines")?;
             }
             Mode::Triangles | Mode::Strip | Mode::Fan => {
@@ -446,7 +445,8 @@ impl Corners {
         }
     }
 
-    /// Appends the lines over drawn vertices that begin at `first`; points and pairs of equal corners make none.
+    /// Appends the lines over drawn vertices that begin at `first`, of which points are some; pairs of equal corners make
+    /// none.
     fn lines(&self, mode: Mode, first: u32, out: &mut Vec<[DrawnVertex; 2]>) {
         let corner = |k: usize| match self {
             Self::Listed(indices) => indices[k],
@@ -457,13 +457,15 @@ impl Corners {
             Mode::Lines => count / 2,
             Mode::LineStrip => count.saturating_sub(1),
             Mode::LineLoop if count > 1 => count,
+            Mode::Points => count,
             _ => 0,
         };
         let line = |k: usize| match mode {
             Mode::Lines => [corner(2 * k), corner(2 * k + 1)],
+            Mode::Points => [corner(k); 2],
             _ => [corner(k), corner((k + 1) % count)],
         };
-        let drawn = (0..lines).map(line).filter(|[a, b]| a != b);
+        let drawn = (0..lines).map(line).filter(|[a, b]| a != b || mode == Mode::Points);
         out.extend(drawn.map(|ends| ends.map(|corner| DrawnVertex(first + corner))));
     }
 
