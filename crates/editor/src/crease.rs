@@ -30,15 +30,17 @@ pub(crate) fn details(
     let Some(&first) = free.first() else {
         return Err("has no vertex of the handle with two rings of others around it: select more vertices".to_owned());
     };
-    let patch = Patch::around(surface, &free);
+    let mut patch = Patch::around(surface, &free);
     let centre = surface.positions[first];
     let positions = || patch.vertices.iter().map(|v| surface.positions[*v]);
     let mut values: Vec<[f64; 3]> = positions().map(|p| (p - centre).to_array()).collect();
     let own = Surface {
         positions: positions().collect(),
-        triangles: patch.triangles,
+        triangles: std::mem::take(&mut patch.triangles),
     };
     let topology = Topology::of(&own);
+    // A border would shrink: nothing beyond it holds it.
+    patch.free.retain(|v| !topology.is_boundary_vertex(SurfaceVertex(*v)));
     let is_free = |v: SurfaceVertex| patch.free.binary_search(&v.0).is_ok();
     let mut parts = 0..topology.components().len() as u32;
     if parts.any(|part| topology.vertices_of(part).all(is_free)) {
@@ -47,11 +49,12 @@ pub(crate) fn details(
     let (order, budget) = (BilaplacianOrder::ThinPlate, Budget::default());
     fair(&own, &topology, &patch.free, order, &mut values, budget, &Cancel::new())
         .map_err(|error| format!("can't be told from its surroundings: {error}"))?;
-    let way = |(v, own): (usize, &u32)| {
+    let way = |own: &u32| {
         let fair = DVec3::from_array(values[*own as usize]);
+        let v = patch.vertices[*own as usize];
         (v, surface.positions[v] - centre - fair)
     };
-    Ok(free.into_iter().zip(&patch.free).map(way).collect())
+    Ok(patch.free.iter().map(way).collect())
 }
 
 /// The vertices within `width` of some others along the surface, and two rings around them, ascending.

@@ -136,6 +136,23 @@ fn a_moved_crease_is_sharpened_before_it_moves() {
 }
 
 #[test]
+fn a_border_stays_where_a_crease_runs_across_it_or_along_it() {
+    let drawn = roof(0.5);
+    for points in [
+        [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+        [[-0.6, 1.0, -0.3], [0.6, 1.0, -0.3]],
+    ] {
+        let mut across = edit("bilaplacian", 2.0);
+        across["handles"][0]["curve"]["points"] = json!(points);
+        let found = bent(&drawn, &across, &[]);
+        let is_border = |p: &DVec3| p.x.abs() < 0.9 * WIDTH && p.y > 0.999;
+        let pairs = drawn.positions.iter().zip(&found);
+        assert!(pairs.clone().filter(|(p, _)| is_border(p)).all(|(p, q)| p == q));
+        assert!(pairs.into_iter().any(|(p, q)| p.distance(*q) > 0.01));
+    }
+}
+
+#[test]
 fn a_crease_that_cant_be_sharpened_is_refused_in_one_sentence() {
     let folder = Folder::new();
     let (file, out) = (folder.write_mesh("in.off", &roof(0.5)), folder.at("out.off"));

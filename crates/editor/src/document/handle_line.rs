@@ -1,6 +1,7 @@
 //! The line that a handle follows.
 
 use glam::DAffine3;
+use pliant_mesh::MirrorPlane;
 
 use super::handle_curve::HandleCurve;
 use super::handle_sketch::HandleSketch;
@@ -40,6 +41,14 @@ impl HandleLine {
     /// Returns true if it moves nothing.
     pub fn is_rest(&self) -> bool {
         self.curve().is_some_and(HandleCurve::is_rest)
+    }
+
+    /// Its mirror image across a plane.
+    pub(crate) fn mirrored(&self, plane: &MirrorPlane) -> Option<Self> {
+        match self {
+            Self::Curve(curve) => curve.mirrored(plane).map(Self::Curve),
+            Self::Sketch(sketch) => sketch.mirrored(plane).map(Self::Sketch),
+        }
     }
 
     /// The line of the handle at rest: a sketch has none.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3};
+use pliant_mesh::MirrorPlane;
 
 /// The smallest weight of a sketch; 1 is exact.
 const LEAST_WEIGHT: f64 = 1e-3;
@@ -72,6 +73,17 @@ impl HandleSketch {
             line,
             weight,
         })))
+    }
+
+    /// Its mirror image across a plane: the same picture the other way round, seen from the mirrored place.
+    pub(crate) fn mirrored(&self, plane: &MirrorPlane) -> Option<Self> {
+        // A mirror alone would turn all triangles inside out, so the picture is mirrored, too.
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| plane.mirrored_vector(axis).extend(0.0));
+        let world_from_mirrored = DMat4::from_cols(x, y, z, plane.mirrored(DVec3::ZERO).extend(1.0));
+        let turned = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let line = self.line().iter().map(|point| DVec2::new(-point.x, point.y));
+        let clip_from_world = turned * *self.clip_from_world() * world_from_mirrored;
+        Self::new(clip_from_world, line.collect(), self.weight()).ok()
     }
 
     /// The matrix from world to clip space.

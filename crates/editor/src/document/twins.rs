@@ -24,12 +24,14 @@ pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId,
         second.pivot_place = PivotPlace::Picked;
         second.soft = first.soft;
         second.free_along = first.free_along.map(|direction| plane.mirrored_vector(direction));
-        let curve = first.line.as_ref().and_then(HandleLine::curve);
-        second.line = curve.and_then(|curve| curve.mirrored(&plane)).map(HandleLine::Curve);
+        second.line = first.line.as_ref().and_then(|line| line.mirrored(&plane));
         second.twin = Some(Twin { handle: id, plane });
     });
-    // The twin is known to be at rest; from there it gets its other half's mirrored transform.
-    document.keep_shape();
+    // The twin is known to be at rest; from there it gets its other half's mirrored transform. A sketch has no rest, and
+    // the next shape is on its line.
+    if first.line.as_ref().and_then(HandleLine::sketch).is_none() {
+        document.keep_shape();
+    }
     if first.is_displaced() {
         let mirrored = mirrored_transform(&plane, first.transform, first.pivot);
         document.change_handle(other, |second| second.put(mirrored));

@@ -68,6 +68,16 @@ impl OtherSide {
         (opposite, paint)
     }
 
+    /// Returns true if the vertices, where they are shown, are all on one side of the plane.
+    pub(super) fn is_beyond(&self, workspace: &Workspace, vertices: &[SurfaceVertex]) -> bool {
+        let plane = &self.sides.plane;
+        let mut beyond = vertices
+            .iter()
+            .map(|&vertex| plane.normal().dot(workspace.position(vertex)) - plane.distance());
+        let first = beyond.next().unwrap_or_default();
+        first != 0.0 && beyond.all(|other| other * first > 0.0)
+    }
+
     /// A stroke that reaches the twin that it has made itself crosses the plane: both become one handle.
     fn join_where_they_meet(&mut self, workspace: &mut Workspace, own: Paint, vertices: &[SurfaceVertex]) {
         let Some(twin) = self.made else { return };

@@ -61,17 +61,6 @@ impl PaintStroke {
         Some(StrokeGesture::new(transaction, stroke, pointer))
     }
 
-    /// The same without an other side: a sketch is of one view.
-    pub fn begin_on_one_side(
-        workspace: &mut Workspace,
-        settings: &ToolSettings,
-        pointer: Pointer,
-    ) -> Option<StrokeGesture<Self>> {
-        let mut gesture = Self::begin(workspace, settings, pointer)?;
-        gesture.stroke_mut().other_side = None;
-        Some(gesture)
-    }
-
     /// Paints a handle's vertices on the shown shape, which becomes the rest shape, and lets them follow a line there;
     /// `reach` is the length, in world units, within which the surface beside them follows.
     pub fn take_with_line(
@@ -81,6 +70,10 @@ impl PaintStroke {
         line: HandleLine,
         reach: f64,
     ) {
+        // An outline across the plane of symmetry is of one view: seen from the other side, it is another one.
+        let is_sketch = line.sketch().is_some();
+        let other_side = self.other_side.take();
+        self.other_side = other_side.filter(|other| !is_sketch || other.is_beyond(workspace, &vertices));
         workspace.document.apply_shape();
         let members = vertices.clone();
         self.take(workspace, vertices);

@@ -38,7 +38,7 @@ pub(crate) struct SketchStroke {
 impl SketchStroke {
     pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
         context.workspace.selection.wants_new_handle = true;
-        let stroke = PaintStroke::begin_on_one_side(context.workspace, context.settings, pointer)?;
+        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
         Some(Self {
             path: DrawnPath::begin(pointer, STEP_PX),
             stroke,

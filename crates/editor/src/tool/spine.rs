@@ -3,8 +3,6 @@
 //! A stroke tells only roughly where the limb is, and nothing about its depth. Rays from each sample across the stroke
 //! find the limb's walls, in depth and beside the stroke, and the sample moves half way between them.
 
-use std::collections::BTreeSet;
-
 use glam::DVec3;
 use pliant_mesh::{Curve, SurfaceVertex};
 
@@ -145,15 +143,17 @@ pub(super) fn around(curve: &Curve, half: f64, samples: &[Sample], picking: &Pic
         let point = picking.position(vertex);
         line.windows(2).any(|ends| distance_to(point, ends) <= limit)
     };
-    let mut found: BTreeSet<SurfaceVertex> = BTreeSet::new();
+    let mut is_seen = vec![false; picking.model.surface.positions.len()];
+    let mut found: Vec<SurfaceVertex> = Vec::new();
     let mut stack: Vec<SurfaceVertex> = samples.iter().map(|sample| sample.pick.vertex).collect();
     while let Some(vertex) = stack.pop() {
-        if !found.contains(&vertex) && is_near(vertex) {
-            found.insert(vertex);
+        if !std::mem::replace(&mut is_seen[vertex.index()], true) && is_near(vertex) {
+            found.push(vertex);
             stack.extend(picking.model.topology.neighbours(vertex));
         }
     }
-    found.into_iter().collect()
+    found.sort_unstable();
+    found
 }
 
 /// The distance of a point from a segment.

@@ -67,11 +67,6 @@ impl<S: Stroke> StrokeGesture<S> {
         gesture
     }
 
-    /// The effect on the vertices.
-    pub fn stroke_mut(&mut self) -> &mut S {
-        &mut self.stroke
-    }
-
     /// Moves the brush to a point of the viewport.
     pub fn dab(&mut self, context: &mut Context<'_>, to_px: DVec2) {
         let from_px = std::mem::replace(&mut self.last_px, to_px);

@@ -255,24 +255,59 @@ fn a_curve_on_the_surface_takes_what_is_under_it_and_other_strokes_are_refused_i
     assert!(rig.editor.view().problem.unwrap().contains("choose the Handle tool"));
 }
 
-#[test]
-fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_refused() {
+/// A ball, and a line over a part of its outline, given by two angles in degrees, that is a fifth of the radius farther
+/// out in its middle.
+fn ball_and_bump([from, to]: [f64; 2]) -> (Rig, Vec<DVec2>) {
     let mut rig = Rig::open(shapes::icosphere(4));
     rig.choose("bilaplacian");
     rig.command(Command::View(NamedView::Front));
     rig.drain();
     rig.command(Command::SetTool(ToolMode::PaintHandle));
     rig.command(Command::SetStrokeShape(StrokeShape::Sketch));
-    let bounds = rig.model.bounds().unwrap();
-    let centre_px = px(&rig, bounds.centre());
-    let radius_px = px(&rig, bounds.centre() + DVec3::Y).distance(centre_px);
-    // A quarter of the outline on top of the ball, a fifth of the radius farther out in its middle.
+    let centre = rig.model.bounds().unwrap().centre();
+    let centre_px = px(&rig, centre);
+    let radius_px = px(&rig, centre + DVec3::Y).distance(centre_px);
     let line = |share: f64| {
-        let angle = (45.0 + 90.0 * share).to_radians();
+        let angle = (from + (to - from) * share).to_radians();
         let bump = 0.2 * (share * std::f64::consts::PI).sin();
         centre_px + DVec2::new(angle.cos(), -angle.sin()) * radius_px * (1.0 + bump)
     };
-    let way: Vec<DVec2> = (0..=24).map(|step| line(f64::from(step) / 24.0)).collect();
+    let way = (0..=24).map(|step| line(f64::from(step) / 24.0)).collect();
+    (rig, way)
+}
+
+#[test]
+fn with_symmetry_a_sketch_beside_the_plane_has_a_twin_and_one_across_it_has_none() {
+    for (angles_deg, count) in [([15.0, 70.0], 2), ([50.0, 140.0], 1)] {
+        let (mut rig, way) = ball_and_bump(angles_deg);
+        rig.command(Command::SetSymmetry(Symmetry::Axis(0)));
+        rig.drain();
+        rig.swipe(&way);
+        rig.drain();
+        assert_eq!(
+            rig.editor.document().handles().len(),
+            count,
+            "{:?}",
+            rig.editor.view().problem
+        );
+        let view = rig.editor.view();
+        let moved = rig.model.surface.positions.iter().zip(view.displacements.iter());
+        let beside = moved.filter(|(p, _)| p.x.abs() > 1e-9);
+        let (left, right): (Vec<_>, Vec<_>) = beside.partition(|(p, _)| p.x < 0.0);
+        let [left, right] = [left, right].map(|side| side.iter().map(|(_, way)| way.y).sum::<f64>());
+        assert!(right > 1.0, "{left} {right}");
+        if count == 2 {
+            assert!((left / right - 1.0).abs() < 1e-6, "{left} {right}");
+            let edit = rig.editor.edit_file().unwrap();
+            assert!(edit.handles.iter().all(|handle| handle.sketch.is_some()));
+        }
+    }
+}
+
+#[test]
+fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_refused() {
+    let (mut rig, way) = ball_and_bump([45.0, 135.0]);
+    let centre_px = px(&rig, rig.model.bounds().unwrap().centre());
     rig.swipe(&way);
     rig.drain();
     assert_eq!(rig.editor.view().problem, None);
@@ -280,7 +315,7 @@ fn a_sketch_beside_the_outline_moves_it_onto_the_line_and_one_far_from_it_is_ref
     assert!(document.is_settled() && document.handles()[0].line.as_ref().unwrap().sketch().is_some());
     let highest = (0..rig.model.surface.positions.len())
         .map(|v| rig.model.surface.positions[v] + document.from_file()[v])
-        .map(|p| px(&rig, p).distance(line(0.5)))
+        .map(|p| px(&rig, p).distance(way[12]))
         .fold(f64::INFINITY, f64::min);
     assert!(highest < 4.0, "{highest} points from the line");
     // A line far from any outline means none.
