@@ -266,10 +266,13 @@ impl Editor {
             return;
         }
         if key == Key::Enter
-            && let Some(pairs) = self.settings.take_pairs()
+            && let Some(pairs) = self.settings.pairs()
         {
-            let settings = self.settings.merge.clone();
-            return merge_held(&mut self.workspace, &pairs, settings);
+            if self.workspace.stitching.is_none() {
+                self.workspace.refusal = None;
+                merge_held(&mut self.workspace, pairs, self.settings.merge.clone());
+            }
+            return;
         }
         if key == Key::Escape && self.workspace.keys.is_playing() {
             self.workspace.pause_keys();

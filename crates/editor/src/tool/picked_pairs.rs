@@ -33,14 +33,10 @@ impl ToolSettings {
         true
     }
 
-    /// The pairs to merge at, if any are picked; then no place is wanted any longer.
-    pub(crate) fn take_pairs(&mut self) -> Option<Vec<[SurfaceVertex; 2]>> {
+    /// The pairs to merge at, if any are picked. They stay until the mesh changes, so that a refused merge can be mended.
+    pub(crate) fn pairs(&self) -> Option<&[[SurfaceVertex; 2]]> {
         let is_wanted = matches!(self.wants_rim, Some(RimUse::MergePairs { .. }));
-        let pairs = (is_wanted && !self.picked_pairs.is_empty()).then(|| self.picked_pairs.clone());
-        if pairs.is_some() {
-            self.want_nothing();
-        }
-        pairs
+        (is_wanted && !self.picked_pairs.is_empty()).then_some(&*self.picked_pairs)
     }
 
     /// The number of its pair at each place.

@@ -183,6 +183,8 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
         change.pairs.iter().all(|[a, b]| !part.contains(a) && part.contains(b)),
         "A comes first"
     );
+    assert_eq!(numbers(&rig), "1122", "a refused merge leaves the places");
+    rig.key(Key::Escape);
     assert!(rig.editor.view().wants_rim.is_none() && numbers(&rig).is_empty());
     rig.command(Command::MergePicked);
     for _ in 0..2 {
