@@ -112,6 +112,8 @@ pub struct SceneView<'a> {
     pub wants_rim: Option<RimUse>,
     /// The rim under the pointer that the next click takes.
     pub rim: Option<&'a PointedRim>,
+    /// The number of its pair at each place that was picked for a merge.
+    pub pair_numbers: Vec<Readout>,
     /// The line or curve along which the next drag cuts; `None` if it does not cut.
     pub wants_cut: Option<CutStroke>,
     /// How parts are merged.

@@ -24,7 +24,14 @@ pub(crate) fn status(
         return format!("This file has only points: {refused}");
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
-    let now = now.or_else(|| settings.wants_rim.map(|wanted| rim_hint(wanted, rim)));
+    let now = now.or_else(|| {
+        let hint = rim_hint(settings.wants_rim?, rim);
+        Some(match settings.pair_numbers(workspace).len() {
+            0 => hint,
+            1 => format!("{hint}; Ctrl+Z takes the last place back"),
+            _ => format!("{hint}; Enter joins at the pairs, Ctrl+Z takes the last place back"),
+        })
+    });
     let now = now.or_else(|| settings.wants_cut.map(cut_hint));
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
@@ -43,6 +50,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
         RimUse::Fill => "fills it",
         RimUse::Bridge { first: None } => "begins the bridge there",
         RimUse::Bridge { first: Some(_) } => "leads the bridge there",
+        RimUse::MergePairs { first: None } => "begins a pair there",
+        RimUse::MergePairs { first: Some(_) } => "ends the pair there",
         RimUse::Merge { first: None } => "takes it as the first of two",
         RimUse::Merge { first: Some(_) } => "joins the first one to it, place to place",
     };
@@ -56,6 +65,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
             RimUse::Fill => "Click near the rim of a hole",
             RimUse::Bridge { first: None } => "Click near the first of two rims",
             RimUse::Bridge { first: Some(_) } => "Click near the second rim",
+            RimUse::MergePairs { first: None } => "Click a place of a border",
+            RimUse::MergePairs { first: Some(_) } => "Click the place of the other border that belongs to it",
             RimUse::Merge { first: None } => "Click a place of the first of two rims",
             RimUse::Merge { first: Some(_) } => "Click the place of the second rim that belongs to it",
         }

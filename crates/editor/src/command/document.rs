@@ -14,9 +14,14 @@ pub(super) const UNDO: Entry<()> = Entry {
     unavailable: |state, ()| {
         let undo = state.workspace.history.undo_name();
         let is_still = state.workspace.flow.is_still();
-        unless(undo.is_some() || !is_still, "There is nothing to undo.")
+        let has_picks = !state.settings.pair_numbers(state.workspace).is_empty();
+        unless(undo.is_some() || !is_still || has_picks, "There is nothing to undo.")
     },
-    action: Action::Do(|context, ()| context.workspace.undo()),
+    action: Action::Do(|context, ()| {
+        if !context.settings.take_back_pick() {
+            context.workspace.undo();
+        }
+    }),
 };
 
 /// Redoes the last undone step.

@@ -247,6 +247,20 @@ pub(super) const MERGE_PICKED: Entry<()> = Entry {
     action: Action::Do(|context, ()| want_rim(context, RimUse::Merge { first: None })),
 };
 
+/// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
+pub(super) const MERGE_PAIRS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Merge at pairs of places",
+        "Joins borders at pairs of places that you click in turn, three on a border or more; Enter ends.",
+        "join stitch combine append pick points correspondence",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: when_part_is_held,
+    action: Action::Do(|context, ()| want_rim(context, RimUse::MergePairs { first: None })),
+};
+
 /// Chooses how parts are merged.
 pub(super) const SET_MERGE: Entry<MergeSettings> = Entry {
     listed: &[],

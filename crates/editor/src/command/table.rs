@@ -379,6 +379,8 @@ commands! {
     Merge = mesh::MERGE;
     /// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
     MergePicked = mesh::MERGE_PICKED;
+    /// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
+    MergePairs = mesh::MERGE_PAIRS;
     /// Chooses how parts are merged; the reach is clamped to [`REACH_RANGE`](crate::REACH_RANGE).
     SetMerge(settings: MergeSettings) = mesh::SET_MERGE;
     /// Changes the mesh.

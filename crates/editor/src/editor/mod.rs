@@ -16,7 +16,7 @@ use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
 use crate::view::{Shading, UpAxis, View, up_axis_of};
-use crate::workspace::{ColouredBy, Workspace, take_mirrored, take_stitched};
+use crate::workspace::{ColouredBy, Workspace, merge_held, take_mirrored, take_stitched};
 
 /// The factor by which a notch of the wheel changes the brush's size.
 const WHEEL_STEP: f64 = 1.15;
@@ -263,6 +263,15 @@ impl Editor {
             next.unwrap_or(Next::Stay)
         });
         if is_taken {
+            return;
+        }
+        if key == Key::Enter
+            && let Some(pairs) = self.settings.pairs()
+        {
+            if self.workspace.stitching.is_none() {
+                self.workspace.refusal = None;
+                merge_held(&mut self.workspace, pairs, self.settings.merge.clone());
+            }
             return;
         }
         if key == Key::Escape && self.workspace.keys.is_playing() {

@@ -82,6 +82,7 @@ impl Editor {
             wants_pivot: settings.wants_pivot,
             wants_rim: settings.wants_rim,
             rim: self.overlay.rim.as_ref(),
+            pair_numbers: settings.pair_numbers(workspace),
             wants_cut: settings.wants_cut,
             merge: &settings.merge,
             stitching: workspace.stitching.as_ref().map(|stitching| stitching.change.name()),

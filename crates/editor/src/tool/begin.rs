@@ -180,6 +180,7 @@ fn take_rim(context: &mut Context<'_>, pointer: Pointer) -> Begun {
             context.settings.wants_rim = Some(RimUse::Bridge { first });
         }
         RimUse::Bridge { first: Some(first) } => stitch(context.workspace, MeshChange::Bridge([first, rim.vertex])),
+        RimUse::MergePairs { first } => context.settings.pick_for_pair(first, rim.vertex),
         RimUse::Merge { first: None } => {
             let first = Some(rim.vertex);
             context.settings.wants_rim = Some(RimUse::Merge { first });

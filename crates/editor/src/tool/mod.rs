@@ -35,6 +35,7 @@ mod other_side;
 mod outline;
 mod overlay;
 mod paint;
+mod picked_pairs;
 mod pose;
 mod pulled_curve;
 mod rim;

@@ -23,6 +23,11 @@ pub enum RimUse {
         /// The vertex of the first one, once that was taken.
         first: Option<SurfaceVertex>,
     },
+    /// It has a place of a pair, of which several are picked before borders are joined there.
+    MergePairs {
+        /// The first place of the present pair, once that was taken.
+        first: Option<SurfaceVertex>,
+    },
 }
 
 impl RimUse {
@@ -30,7 +35,7 @@ impl RimUse {
     pub fn first(self) -> Option<SurfaceVertex> {
         match self {
             Self::Fill => None,
-            Self::Bridge { first } | Self::Merge { first } => first,
+            Self::Bridge { first } | Self::Merge { first } | Self::MergePairs { first } => first,
         }
     }
 }
@@ -103,7 +108,7 @@ impl Rims {
         let held = held_parts(workspace);
         let is_held = |vertex: SurfaceVertex| held.contains(&model.topology.component(vertex));
         let may_follow = |rim: &Vec<SurfaceVertex>| match wanted {
-            RimUse::Merge { .. } => rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first)),
+            RimUse::Merge { .. } | RimUse::MergePairs { .. } => rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first)),
             RimUse::Bridge { .. } | RimUse::Fill => !rim.contains(&first),
         };
         self.loops.iter().map(may_follow).collect()

@@ -1,5 +1,7 @@
 //! The settings of tools: the chosen one, its selection of vertices, the gizmo's orientation.
 
+use pliant_mesh::SurfaceVertex;
+
 use super::brush::{BRUSH_RADIUS_PX, BrushMetric, BrushSize};
 use super::correction_brush::{Correction, CorrectionBrush};
 use super::flow_brush::FlowBrush;
@@ -37,6 +39,8 @@ pub(crate) struct ToolSettings {
     pub(crate) wants_pivot: bool,
     /// The use of the rim that the next click takes.
     pub(crate) wants_rim: Option<RimUse>,
+    /// The pairs of places on borders that were picked for a merge.
+    pub(super) picked_pairs: Vec<[SurfaceVertex; 2]>,
     /// The line or curve that the next drag draws, along which the surface is cut.
     pub(crate) wants_cut: Option<CutStroke>,
     /// How parts are merged.
@@ -62,6 +66,7 @@ impl Default for ToolSettings {
             whole_limb: false,
             wants_pivot: false,
             wants_rim: None,
+            picked_pairs: Vec::new(),
             wants_cut: None,
             merge: MergeSettings::default(),
         }
@@ -111,6 +116,7 @@ impl ToolSettings {
     /// The next press is the tool's again.
     pub(crate) fn want_nothing(&mut self) {
         (self.wants_pivot, self.wants_rim, self.wants_cut) = (false, None, None);
+        self.picked_pairs.clear();
     }
 
     /// Chooses the measure of the chosen tool's brush; the tools that paint handles share one, and so do the others.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 use pliant_editor::{
-    Command, Event, KeptSide, MergeSettings, MeshChange, ObjectAction, Paint, Placement, REACH_RANGE, RimUse,
+    Command, Event, KeptSide, Key, MergeSettings, MeshChange, ObjectAction, Paint, Placement, REACH_RANGE, RimUse,
 };
 use pliant_mesh::{Object, SurfaceVertex, shapes};
 
@@ -137,6 +137,55 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
         };
         assert!(!part.contains(&a) && part.contains(&b), "A comes first");
     }
+    // Several pairs, of which Undo takes places back one by one.
+    let places = |held: bool, place: usize| {
+        let rim = rims.iter().find(|rim| part.contains(&rim[0]) == held).unwrap();
+        rim[place * rim.len() / 3]
+    };
+    let steps = rig.editor.view().undo.map(str::to_owned);
+    rig.command(Command::MergePairs);
+    let click = |rig: &mut Rig, vertex: SurfaceVertex| {
+        let at = px(rig, vertex);
+        rig.press(at);
+        rig.release(at);
+    };
+    let numbers = |rig: &Rig| {
+        rig.editor
+            .view()
+            .pair_numbers
+            .iter()
+            .map(|number| number.text.clone())
+            .collect::<String>()
+    };
+    click(&mut rig, places(false, 0));
+    click(&mut rig, places(true, 0));
+    click(&mut rig, places(true, 1));
+    assert_eq!(numbers(&rig), "112");
+    for left in ["11", "1", "", "1", "11"] {
+        match left {
+            "1" if numbers(&rig).is_empty() => click(&mut rig, places(false, 0)),
+            "11" if numbers(&rig) == "1" => click(&mut rig, places(true, 0)),
+            _ => rig.command(Command::Undo),
+        }
+        assert_eq!(numbers(&rig), left);
+    }
+    click(&mut rig, places(false, 2));
+    click(&mut rig, places(true, 2));
+    assert_eq!(
+        rig.editor.view().undo.map(str::to_owned),
+        steps,
+        "the document's steps are left alone"
+    );
+    rig.key(Key::Enter);
+    let change = asked(&mut rig);
+    assert_eq!(change.pairs.len(), 2);
+    assert!(
+        change.pairs.iter().all(|[a, b]| !part.contains(a) && part.contains(b)),
+        "A comes first"
+    );
+    assert_eq!(numbers(&rig), "1122", "a refused merge leaves the places");
+    rig.key(Key::Escape);
+    assert!(rig.editor.view().wants_rim.is_none() && numbers(&rig).is_empty());
     rig.command(Command::MergePicked);
     for _ in 0..2 {
         let at = px(&rig, of_part(true));

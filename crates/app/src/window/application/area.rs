@@ -240,6 +240,12 @@ impl Application {
         } else if shown.tool == ToolMode::PaintStiffness && shown.model.is_some() {
             stiffness_legend::paint(ui, rect.left_top() + vec2(14.0, 14.0));
         }
+        for number in &shown.pair_numbers {
+            if let Some(at_px) = shown.camera.project(number.at, shown.viewport_px) {
+                let at = rect.min + vec2(at_px.x as f32 + 6.0, at_px.y as f32 - 26.0);
+                axis_ball::readout(ui.painter(), at, &number.text);
+            }
+        }
         if let Some(readout) = &shown.readout
             && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)
         {
