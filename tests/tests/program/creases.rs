@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
+use std::path::Path;
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, shapes};
-use pliant_tests::{Folder, largest_distance, open};
+use pliant_tests::{Folder, largest_distance, open, run};
 use serde_json::{Value, json};
 
 const CELLS: usize = 40;
@@ -148,8 +149,30 @@ fn a_border_stays_where_a_crease_runs_across_it_or_along_it() {
         let is_border = |p: &DVec3| p.x.abs() < 0.9 * WIDTH && p.y > 0.999;
         let pairs = drawn.positions.iter().zip(&found);
         assert!(pairs.clone().filter(|(p, _)| is_border(p)).all(|(p, q)| p == q));
-        assert!(pairs.into_iter().any(|(p, q)| p.distance(*q) > 0.01));
+        assert!(pairs.into_iter().any(|(p, q)| p.distance(*q) > 1e-3));
     }
+}
+
+#[test]
+fn keys_hold_the_sharpness_and_refuse_one_out_of_its_range() {
+    let folder = Folder::new();
+    let (file, out) = (folder.write_mesh("in.off", &roof(0.5)), folder.at("out.off"));
+    let mut keyed = edit("bilaplacian", 0.0);
+    let key = |time: f64, sharpen: f64| json!({ "time": time, "curves": { "ridge": { "sharpen": sharpen } } });
+    keyed["keys"] = json!([key(0.0, 0.0), key(0.5, 2.0)]);
+    let animate = |edit: &Value| {
+        let (edit, frames) = (folder.write("edit.json", edit.to_string()), folder.at("f-#.off"));
+        let paths = [&file, &edit, &frames].map(|path| path.to_string_lossy().into_owned());
+        let [file, edit, frames] = &paths;
+        run(["animate", file, "--edit", edit, "--output", frames, "--fps", "2"])
+    };
+    animate(&keyed).done();
+    folder.apply(&file, &edit("bilaplacian", 2.0), &out, &[]).done();
+    let positions = |path: &Path| open(path).model.rest_positions();
+    assert!(largest_distance(&positions(&folder.at("f-1.off")), &positions(&out)) < 1e-9);
+    assert!(largest_distance(&positions(&folder.at("f-0.off")), &roof(0.5).positions) < 1e-9);
+    keyed["keys"] = json!([key(0.0, 9.0)]);
+    animate(&keyed).refused(1, &["keys[0].curves", "`sharpen` 9"]);
 }
 
 #[test]
@@ -172,5 +195,10 @@ fn a_crease_that_cant_be_sharpened_is_refused_in_one_sentence() {
     refused(json!({ "width": 0.3, "sharpen": 9 }), &[place, "`sharpen` 9"]);
     refused(json!({ "width": 0.3, "angle": 9 }), &[place, "`angle`"]);
     refused(json!({ "width": 1e-3, "sharpen": 1 }), &[place, "two rings"]);
-    refused(json!({ "width": 30, "sharpen": 1 }), &[place, "covers a whole part"]);
+    let ball = folder.write_mesh("ball.off", &shapes::icosphere(2));
+    let mut whole = edit("arap", 1.0);
+    whole["handles"][0]["curve"]["crease"] = json!({ "width": 30, "sharpen": 1 });
+    folder
+        .apply(&ball, &whole, &out, &[])
+        .refused(1, &[place, "covers a whole part"]);
 }
