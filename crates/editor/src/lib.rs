@@ -45,6 +45,7 @@
 
 mod bending;
 mod command;
+mod crease;
 mod cut;
 mod document;
 mod ease;
@@ -75,10 +76,10 @@ pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
-    Access, Animation, Carries, Content, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid, HANDLE_COLOURS,
+    Access, Animation, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid, HANDLE_COLOURS,
     HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape,
-    KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach, SaveMark, SavedAs, SmallParts, Tips, Twin,
-    object_name, sum_of_shapes,
+    KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach, SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips,
+    Twin, object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;

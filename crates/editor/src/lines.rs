@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Role, Target};
 use pliant_mesh::{Surface, SurfaceVertex};
 
+use crate::crease;
 use crate::document::{HandleCurve, HandleLine, HandleSketch};
 use crate::outline;
 
@@ -22,6 +23,8 @@ pub struct Lines {
     each: Arc<Vec<Laid>>,
     /// The section of each surface vertex; empty without lines.
     sections: Arc<Vec<u16>>,
+    /// The number of the first handle whose crease can't be told from its surroundings, and the reason.
+    refused: Option<(usize, String)>,
 }
 
 /// A line and the vertices that follow it.
@@ -35,10 +38,18 @@ struct Laid {
 /// An entry for each of a handle's vertices, which ascend.
 #[derive(Clone, PartialEq, Debug)]
 enum Followers {
-    /// The place on the curve at rest that is nearest to the vertex.
-    Curve(HandleCurve, Arc<Vec<f64>>),
+    Curve(HandleCurve, Arc<Vec<OnCurve>>),
     /// The vertex' way to the sketched line.
     Sketch(Vec<DVec3>),
+}
+
+/// A vertex that follows a curve.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct OnCurve {
+    /// The place on the curve at rest that is nearest to it.
+    place: f64,
+    /// Its way when the crease along the curve gets twice as sharp.
+    detail: DVec3,
 }
 
 impl Lines {
@@ -56,7 +67,11 @@ impl Lines {
             let is_own = |vertex: &usize| roles[*vertex] == Role::Handle(handle as u16);
             let vertices: Vec<usize> = (0..roles.len()).filter(is_own).collect();
             let vertices = match line {
-                HandleLine::Curve(curve) => along_curve(curve, &vertices, surface, sections),
+                HandleLine::Curve(curve) => {
+                    let (followers, refused) = along_curve(curve, &vertices, surface, sections);
+                    own.refused = own.refused.or_else(|| Some((handle, refused?)));
+                    followers
+                }
                 HandleLine::Sketch(sketch) => to_sketch(sketch, &vertices, surface, sections),
             };
             Arc::make_mut(&mut own.each).push(Laid { handle, vertices });
@@ -67,7 +82,7 @@ impl Lines {
     /// The same with the present way of each handle's curve, by the handle's number; curves with another rest stay.
     pub(crate) fn moved<'a>(&self, present: impl Fn(usize) -> Option<&'a HandleCurve>) -> Self {
         let moved = |laid: &Laid| match (&laid.vertices, present(laid.handle)) {
-            (Followers::Curve(curve, places), Some(present)) if present.rest() == curve.rest() => Laid {
+            (Followers::Curve(curve, places), Some(present)) if present.binds_as(curve) => Laid {
                 handle: laid.handle,
                 vertices: Followers::Curve(present.clone(), Arc::clone(places)),
             },
@@ -76,7 +91,13 @@ impl Lines {
         Self {
             each: Arc::new(self.each.iter().map(moved).collect()),
             sections: Arc::clone(&self.sections),
+            refused: self.refused.clone(),
         }
+    }
+
+    /// The number of the first handle whose crease can't be sharpened, and the reason: a sentence without its subject.
+    pub(crate) fn refused(&self) -> Option<&(usize, String)> {
+        self.refused.as_ref()
     }
 
     /// Returns true if no handle follows a line.
@@ -125,9 +146,18 @@ impl Followers {
     fn maps(&self, share: f64) -> Option<Vec<DAffine3>> {
         match self {
             Self::Curve(curve, places) => {
-                let motion = curve.motion_at(share);
-                let maps = || places.iter().map(|place| motion.map_at(*place)).collect();
-                (!motion.is_rest()).then(maps)
+                let curve = curve.part(share);
+                let motion = curve.motion_at(1.0);
+                let sharpen = curve.crease().map_or(0.0, |crease| crease.sharpen());
+                let map = |own: &OnCurve| {
+                    let sharper = DAffine3::from_translation(own.detail * sharpen);
+                    match (motion.is_rest(), sharpen == 0.0) {
+                        (true, _) => sharper,
+                        (false, true) => motion.map_at(own.place),
+                        (false, false) => motion.map_at(own.place) * sharper,
+                    }
+                };
+                (!curve.is_rest()).then(|| places.iter().map(map).collect())
             }
             Self::Sketch(ways) => {
                 let maps = || {
@@ -141,15 +171,39 @@ impl Followers {
     }
 }
 
-fn along_curve(curve: &HandleCurve, vertices: &[usize], surface: &Surface, sections: &mut [u16]) -> Followers {
+/// The vertices with their places, and the reason why the crease along the curve can't be sharpened.
+fn along_curve(
+    curve: &HandleCurve,
+    vertices: &[usize],
+    surface: &Surface,
+    sections: &mut [u16],
+) -> (Followers, Option<String>) {
     let rest = curve.rest();
-    let mut places = Vec::with_capacity(vertices.len());
+    let mut followers = Vec::with_capacity(vertices.len());
     for vertex in vertices {
         let place = rest.nearest(surface.positions[*vertex]);
         sections[*vertex] = section(place / rest.length());
-        places.push(place);
+        let detail = DVec3::ZERO;
+        followers.push(OnCurve { place, detail });
     }
-    Followers::Curve(curve.clone(), Arc::new(places))
+    let mut refused = None;
+    if let Some(crease) = curve.crease() {
+        let is_beside = |vertex: usize| {
+            let own = vertices.binary_search(&vertex).map(|own| followers[own].place);
+            own.is_ok_and(|place| surface.positions[vertex].distance(rest.position(place)) < crease.width())
+        };
+        match crease::details(surface, vertices, is_beside) {
+            Ok(details) => {
+                for (vertex, detail) in details {
+                    if let Ok(own) = vertices.binary_search(&vertex) {
+                        followers[own].detail = detail;
+                    }
+                }
+            }
+            Err(why) => refused = Some(why),
+        }
+    }
+    (Followers::Curve(curve.clone(), Arc::new(followers)), refused)
 }
 
 /// Vertices that are not on the outline stay.

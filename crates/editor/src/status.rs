@@ -111,6 +111,9 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     } else if settings.draws_curves() && workspace.controls.is_empty() {
         match selected_curve(workspace) {
             Some(_) => "Drag a point of the curve, R twists and S scales the surface around it, or draw another",
+            None if settings.stroke_shape == StrokeShape::Crease => {
+                "Draw along a crease or a border that the brush covers, then sharpen it in the handle's numbers"
+            }
             None if settings.stroke_shape == StrokeShape::Spine => {
                 "Draw through a limb, from the body to its tip, and drag its points"
             }

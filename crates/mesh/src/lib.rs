@@ -55,7 +55,7 @@ pub use bvh::{Bvh, Hit, SelfIntersection, SelfIntersections};
 pub use contacts::{Contact, component_areas, contacts};
 pub use curves::{
     BendRange, Curve, CurveMotion, CurvePath, CurveRefused, FREE_BEND, JointLimits, LARGEST_TWIST_DEG, SCALE_RANGE,
-    pulled_briefly, pulled_chain, pulled_within, triangles_under,
+    feature_line, pulled_briefly, pulled_chain, pulled_within, triangles_under,
 };
 pub use drawn::{Drawn, DrawnSet, Object, Rounding};
 pub use findings::{Finding, FindingKind, Findings, Named};

@@ -4,7 +4,7 @@
 //! Unless their comment says otherwise, they are manifold and their normals point outward.
 
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DAffine3, DVec2, DVec3};
 
@@ -100,6 +100,27 @@ pub fn grid(nx: usize, ny: usize) -> Drawn {
         .flat_map(|y| (0..=nx).map(move |x| DVec3::new(x as f64 / nx as f64, y as f64 / ny as f64, 0.0)))
         .collect();
     drawn(positions, quads(nx, ny, |x, y| y * (nx + 1) + x))
+}
+
+/// A flat sheet [-0.5, 0.5]² at z = 0 of `cells` by `cells` cells with half a ball of radius 0.15 about the origin in it:
+/// above it, as a nose is, if `side` is 1, and below it, as a socket is, if it is -1. One boundary.
+pub fn half_ball(cells: usize, side: f64) -> Drawn {
+    const BALL: f64 = 0.15;
+    let mut sheet = grid(cells, cells);
+    for position in &mut sheet.positions {
+        let flat = *position - DVec3::new(0.5, 0.5, 0.0);
+        let distance = flat.length();
+        let (radius, height) = match distance {
+            ..0.25 => {
+                let (sin, cos) = (FRAC_PI_2 * distance / 0.25).sin_cos();
+                (BALL * sin, BALL * cos)
+            }
+            0.25..0.5 => (BALL + (distance - 0.25) * (0.5 - BALL) / 0.25, 0.0),
+            _ => (distance, 0.0),
+        };
+        *position = flat.normalize_or_zero() * radius + DVec3::Z * (side * height);
+    }
+    sheet
 }
 
 /// The sheet of [`grid`] with vertices that coincide at random, so that a sixth of the places are left: it is no longer

@@ -16,8 +16,15 @@ pub fn project(hash: &str, path: &str, drawn: usize, chance: &mut Chance) -> Val
             "id": id, "name": format!("handle {id}"), "colour": [200, 100, 50, 255], "vertices": [[from, to]],
             "turn_deg": [0, 0, chance.between(-720.0, 720.0)], "pivot": [0.5, 0.5, 0],
         });
-        let (kind, size) = *chance.of(&[("radii", 2.0), ("length", 0.3), ("radii", 0.0)]);
-        handle["reach"] = json!({ kind: size });
+        let reaches = [
+            json!("feature"),
+            json!({ "creased": 0.3 }),
+            json!("part"),
+            json!({ "radii": 2.0 }),
+            json!({ "length": 0.3 }),
+            json!({ "radii": 0.0 }),
+        ];
+        handle["reach"] = chance.of(&reaches).clone();
         if !chance.one_in(4) {
             handle["transform"] = json!({ "translation": [0.2, 0.1, chance.between(-1.0, 1.0)] });
         }

@@ -7,6 +7,7 @@ mod bad_files;
 mod bare_points;
 mod cli;
 mod controls;
+mod creases;
 mod curves;
 mod differences;
 mod drags;

@@ -1,7 +1,9 @@
 //! Commands on the curve of the selected handle.
 
 use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
-use crate::workspace::{divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range};
+use crate::workspace::{
+    divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
+};
 
 /// Lets the points of curves follow a dragged one at their distances, or no longer.
 pub(super) const TOGGLE_CHAIN: Entry<()> = Entry {
@@ -81,6 +83,19 @@ pub(super) const SET_BEND_RANGE: Entry<[f64; 2]> = Entry {
     action: Action::Do(|context, range_deg| set_bend_range(context.workspace, range_deg)),
 };
 
+/// Sharpens or flattens the crease along the curve.
+pub(super) const SHARPEN_CREASE: Entry<f64> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, _| {
+        let curve = selected_curve(state.workspace);
+        let has_crease = curve.is_some_and(|(_, curve)| curve.crease().is_some());
+        let why = "The selected handle follows no crease: draw one with the shape Crease.";
+        without_curve(state).or_else(|| unless(has_crease, why))
+    },
+    action: Action::Do(|context, sharpen| sharpen_crease(context.workspace, sharpen)),
+};
+
 fn without_curve_points(state: &State<'_>) -> Option<Reason> {
     without_curve(state).or_else(|| {
         let is_selected = !state.workspace.controls.is_empty();
@@ -90,6 +105,6 @@ fn without_curve_points(state: &State<'_>) -> Option<Reason> {
 
 fn without_curve(state: &State<'_>) -> Option<Reason> {
     let has_curve = selected_curve(state.workspace).is_some();
-    let why = "The selected handle has no curve: draw one with the shape Curve or Spine.";
+    let why = "The selected handle has no curve: draw one with the shape Curve, Spine or Crease.";
     state.unopened().or_else(|| unless(has_curve, why))
 }

@@ -131,6 +131,13 @@ pub(super) const SET_STROKE_SHAPE: Entry<StrokeShape> = Entry {
             &[],
         ),
         item(
+            StrokeShape::Crease,
+            "Crease",
+            "Finds the crease or border along which you draw: a new handle follows it, and it can be sharpened or flattened.",
+            "feature line edge ridge valley wrinkle border rim sharpen flatten",
+            &[],
+        ),
+        item(
             StrokeShape::Sketch,
             "Sketch",
             "Draws the outline that you see anew: draw beside a nose or a back, and it follows the line.",

@@ -264,6 +264,8 @@ commands! {
     PinCurvePoints = curves::PIN_CURVE_POINTS;
     /// Sets the least and the most bend at the selected points of the curve, in degrees from 0 to 180.
     SetBendRange(range_deg: [f64; 2]) = curves::SET_BEND_RANGE;
+    /// Makes the crease along the selected handle's curve sharper than at rest, or flatter: -1 is flat, 1 twice as sharp.
+    SharpenCrease(sharpen: f64) = curves::SHARPEN_CREASE;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// The gizmo's mode.

@@ -74,14 +74,21 @@ pub struct Twin {
     pub plane: MirrorPlane,
 }
 
-/// The most radii of a handle that [`Reach::Part`] is.
+/// The most radii of a handle that [`Reach::Feature`] and [`Reach::Part`] are.
 pub(crate) const PART_RADII: f64 = 3.0;
 
 /// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
-    /// To the end of the part that the handle is on, where the surface around it widens; at most three radii.
+    /// To the end of the feature that the handle is on, where the surface around it widens or, unless it is a limb, in a
+    /// concave crease; at most three radii.
     #[default]
+    Feature,
+    /// This distance in world units, where ways across concave creases count as longer, as they do for
+    /// [`Reach::Feature`] (0: only the painted vertices).
+    Creased(f64),
+    /// To the end of the part that the handle is on, where the surface around it widens, across any creases; at most three
+    /// radii. No new handle has it: it is that of older projects.
     Part,
     /// This many of the handle's own radii (above 0).
     Radii(f64),
@@ -129,11 +136,11 @@ impl Handle {
         self.transform = transform;
     }
 
-    /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest, or on the
-    /// whole sketch.
+    /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest and its
+    /// crease, or on the whole sketch.
     pub(crate) fn line_binds_as(&self, other: &Self) -> bool {
         match (&self.line, &other.line) {
-            (Some(HandleLine::Curve(own)), Some(HandleLine::Curve(other))) => own.rest() == other.rest(),
+            (Some(HandleLine::Curve(own)), Some(HandleLine::Curve(other))) => own.binds_as(other),
             (own, other) => own == other,
         }
     }

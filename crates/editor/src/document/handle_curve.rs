@@ -5,6 +5,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{BendRange, Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
+use super::crease::Crease;
+
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
 /// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
 #[derive(Clone, PartialEq, Debug)]
@@ -19,6 +21,7 @@ struct Parts {
     pinned: Vec<u32>,
     /// A range for each control point, or none if no joint has limits.
     bends_deg: Vec<[f64; 2]>,
+    crease: Option<Crease>,
 }
 
 /// The bends of a control point without limits, in degrees.
@@ -66,6 +69,7 @@ impl HandleCurve {
             scale,
             pinned: Vec::new(),
             bends_deg: Vec::new(),
+            crease: None,
         })))
     }
 
@@ -122,11 +126,43 @@ impl HandleCurve {
         bends.map(|range| range.map(f64::to_radians)).collect()
     }
 
-    /// The curve with the pins and the limits of another one of as many points.
+    /// The same along a crease, or along none.
     #[must_use]
-    pub(crate) fn with_joints_of(self, other: &Self) -> Self {
+    pub fn creased(mut self, crease: Option<Crease>) -> Self {
+        if crease != self.0.crease {
+            Arc::make_mut(&mut self.0).crease = crease;
+        }
+        self
+    }
+
+    /// The crease along it.
+    pub fn crease(&self) -> Option<Crease> {
+        self.0.crease
+    }
+
+    /// How much sharper than at rest its crease is.
+    fn sharpen(&self) -> f64 {
+        self.crease().map_or(0.0, |crease| crease.sharpen())
+    }
+
+    /// The same with a crease that is so much sharper than at rest, if it has one.
+    #[must_use]
+    pub(crate) fn sharpened(self, sharpen: f64) -> Self {
+        let crease = self.crease().map(|crease| crease.sharpened(sharpen));
+        self.creased(crease)
+    }
+
+    /// Returns true if what a binding knows of both is the same: the curve at rest and the width of its crease.
+    pub(crate) fn binds_as(&self, other: &Self) -> bool {
+        let width = |curve: &Self| curve.crease().map(|crease| crease.width());
+        self.rest() == other.rest() && width(self) == width(other)
+    }
+
+    /// The curve with the pins, the limits and the crease of another one of as many points.
+    #[must_use]
+    pub(crate) fn with_settings_of(self, other: &Self) -> Self {
         let pinned = self.pinned_at(other.pinned().to_vec());
-        pinned.bent_within(other.bends_deg().to_vec())
+        pinned.bent_within(other.bends_deg().to_vec()).creased(other.crease())
     }
 
     /// The curve at rest.
@@ -149,9 +185,9 @@ impl HandleCurve {
         &self.0.scale
     }
 
-    /// Returns true if no control point moves, turns or grows.
+    /// Returns true if no control point moves, turns or grows, and no crease gets sharper or flatter.
     pub fn is_rest(&self) -> bool {
-        self.0.motion.is_rest()
+        self.0.motion.is_rest() && self.sharpen() == 0.0
     }
 
     /// The same curve at rest.
@@ -176,7 +212,7 @@ impl HandleCurve {
             vec![0.0; count],
             vec![1.0; count],
         );
-        resting.map_or_else(|_| self.clone(), |curve| curve.with_joints_of(self))
+        resting.map_or_else(|_| self.clone(), |curve| curve.with_settings_of(self).sharpened(0.0))
     }
 
     /// The curve with the same rest whose control points go to `moved` with these twists and scales; `None` if it would
@@ -184,7 +220,7 @@ impl HandleCurve {
     pub(crate) fn with(&self, moved: Vec<DVec3>, twist_deg: Vec<f64>, scale: Vec<f64>) -> Option<Self> {
         let rest = self.rest();
         let curve = Self::new(rest.points().to_vec(), rest.is_closed(), moved, twist_deg, scale).ok()?;
-        Some(curve.with_joints_of(self))
+        Some(curve.with_settings_of(self))
     }
 
     /// Its mirror image across a plane.
@@ -195,7 +231,7 @@ impl HandleCurve {
         let points = mirrored(rest.points());
         let moved = mirrored(self.moved());
         let curve = Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()?;
-        Some(curve.with_joints_of(self))
+        Some(curve.with_settings_of(self))
     }
 
     /// The largest turn or twist of a part of the curve, in radians.
@@ -212,6 +248,7 @@ impl HandleCurve {
         let scale = self.scale().iter().map(|scale| 1.0 + (scale - 1.0) * t).collect();
         self.with(self.0.path.points_at(t), twist, scale)
             .unwrap_or_else(|| self.clone())
+            .sharpened(self.sharpen() * t)
     }
 
     /// The motion at the share `t` of the way, 0 at rest and 1 at the targets: chords turn, twists grow linearly and so do

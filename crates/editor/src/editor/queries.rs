@@ -9,7 +9,7 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
 use crate::command::{Command, Shortcut, State};
-use crate::document::{Document, HandleId, History, SaveMark};
+use crate::document::{Crease, Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
 use crate::jobs::{Activity, Comparison, Intersections, JobKind};
 use crate::region::Rim;
@@ -137,6 +137,12 @@ impl Editor {
         let selected = self.workspace.controls.points().iter();
         let joint = selected.copied().find(|point| joints.contains(point))?;
         (!curve.rest().is_closed()).then(|| curve.bend_deg(joint as usize))
+    }
+
+    /// The crease along the selected handle's curve; `None` without one.
+    pub fn selected_crease(&self) -> Option<Crease> {
+        let (_, curve) = selected_curve(&self.workspace)?;
+        curve.crease()
     }
 
     fn cursor(&self) -> Cursor {

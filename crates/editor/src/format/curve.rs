@@ -1,5 +1,5 @@
-//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale`, `pinned` and
-//! `bends`.
+//! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale`, `pinned`,
+//! `bends` and `crease`.
 
 use glam::DVec3;
 use serde::de::{Deserializer, Error};
@@ -7,7 +7,7 @@ use serde::ser::Serializer;
 use serde::{Deserialize, Serialize};
 
 use super::transform::Numbers;
-use crate::document::{HandleCurve, is_bend_range_deg};
+use crate::document::{Crease, HandleCurve, is_bend_range_deg};
 
 /// The members in the file; each list but `points` may be left out.
 #[derive(Serialize, Deserialize)]
@@ -26,6 +26,16 @@ struct StoredCurve {
     pinned: Vec<u32>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     bends: Vec<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    crease: Option<StoredCrease>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredCrease {
+    width: f64,
+    #[serde(default)]
+    sharpen: f64,
 }
 
 impl Serialize for HandleCurve {
@@ -43,6 +53,10 @@ impl Serialize for HandleCurve {
             scale: unless(self.scale(), 1.0),
             pinned: self.pinned().to_vec(),
             bends: self.bends_deg().to_vec(),
+            crease: self.crease().map(|crease| StoredCrease {
+                width: crease.width(),
+                sharpen: crease.sharpen(),
+            }),
         };
         stored.serialize(serializer)
     }
@@ -72,6 +86,9 @@ impl<'de> Deserialize<'de> for HandleCurve {
                  degrees"
             )));
         }
+        let crease = stored.crease.map(|own| Crease::new(own.width, own.sharpen)).transpose();
+        let crease =
+            crease.map_err(|refused| D::Error::custom(format!("can't be followed: its `crease` {refused}")))?;
         let curve = Self::new(
             points.clone(),
             stored.closed,
@@ -79,7 +96,10 @@ impl<'de> Deserialize<'de> for HandleCurve {
             stored.twist.unwrap_or_else(|| vec![0.0; count]),
             stored.scale.unwrap_or_else(|| vec![1.0; count]),
         );
-        let curve = curve.map(|curve| curve.pinned_at(stored.pinned).bent_within(stored.bends));
+        let curve = curve.map(|curve| {
+            let curve = curve.pinned_at(stored.pinned).bent_within(stored.bends);
+            curve.creased(crease)
+        });
         curve.map_err(|(list, refused)| D::Error::custom(format!("can't be followed: its `{list}` {refused}")))
     }
 }

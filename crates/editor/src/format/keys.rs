@@ -10,7 +10,7 @@ use super::edit_error::EditError;
 use super::strength::strength_kind;
 use super::transform::Numbers;
 use crate::HandleTransform;
-use crate::document::HandleCurve;
+use crate::document::{HandleCurve, SHARPEN_RANGE};
 use crate::ease::Ease;
 use crate::timeline::KeySpace;
 
@@ -60,6 +60,9 @@ pub struct CurveKey {
     /// The scales.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) scale: Option<Vec<f64>>,
+    /// The sharpness of its crease.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) sharpen: Option<f64>,
 }
 
 impl CurveKey {
@@ -70,18 +73,26 @@ impl CurveKey {
             moved: Some(moved.collect()),
             twist: Some(curve.twist_deg().to_vec()),
             scale: Some(curve.scale().to_vec()),
+            sharpen: curve.crease().map(|crease| crease.sharpen()),
         }
     }
 
     /// The curve of a handle at this key.
     ///
     /// # Errors
-    /// The list that makes no curve, and its fault.
+    /// The list that makes no curve, and its fault, or a sharpness out of its range.
     pub(super) fn on(&self, curve: &HandleCurve) -> Result<HandleCurve, String> {
         let rest = curve.rest();
         let points = rest.points().to_vec();
         let count = points.len();
         let moved = self.moved.as_ref();
+        let sharpen = self.sharpen.unwrap_or_default();
+        if !SHARPEN_RANGE.contains(&sharpen) {
+            let (flat, sharp) = (SHARPEN_RANGE.start(), SHARPEN_RANGE.end());
+            return Err(format!(
+                "has `sharpen` {sharpen}: give a number from {flat} (flat) to {sharp}"
+            ));
+        }
         HandleCurve::new(
             points.clone(),
             rest.is_closed(),
@@ -89,7 +100,7 @@ impl CurveKey {
             self.twist.clone().unwrap_or_else(|| vec![0.0; count]),
             self.scale.clone().unwrap_or_else(|| vec![1.0; count]),
         )
-        .map(|keyed| keyed.with_joints_of(curve))
+        .map(|keyed| keyed.with_settings_of(curve).sharpened(sharpen))
         .map_err(|(list, refused)| format!("can't be followed: its `{list}` {refused}"))
     }
 }

@@ -18,7 +18,7 @@ use crate::document::{Document, HandleCurve, HandleId, HandleLine, attachment_pa
 use crate::lines::Lines;
 use crate::region::Region;
 use crate::warning::{shortened, worded};
-use crate::{HandleTransform, outline};
+use crate::{HandleTransform, crease, outline};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -251,7 +251,14 @@ impl HandleEntry {
                 let under = triangles_under(curve.rest(), &bvh, &surface.triangles).into_iter();
                 let corners = under.flat_map(|triangle| surface.triangles[triangle as usize]);
                 let members: BTreeSet<SurfaceVertex> = corners.collect();
-                Ok(members.into_iter().collect())
+                Ok(match curve.crease() {
+                    Some(crease) => {
+                        let position = |v: SurfaceVertex| surface.positions[v.index()];
+                        let under = members.into_iter();
+                        crease::beside(surface, &model.topology, position, under, crease.width())
+                    }
+                    None => members.into_iter().collect(),
+                })
             }
             (None, None) => Ok(Vec::new()),
         }
@@ -330,6 +337,12 @@ impl EditFile {
         }
         let lines: Vec<Option<HandleLine>> = self.handles.iter().map(HandleEntry::line).collect();
         let lines = Lines::of(lines.iter().map(Option::as_ref), &roles, &model.surface);
+        if let Some((index, why)) = lines.refused() {
+            return Err(EditError::Other {
+                place: format!("handles[{index}].curve.crease"),
+                sentence: why.clone(),
+            });
+        }
         let stiffness = self.stiffness_on(model)?;
         let continuity = self.continuity_on(model, &roles)?;
         Ok(Setup {

@@ -91,6 +91,10 @@ impl BindInput {
     pub(super) fn bind(&self, progress: &Progress, cancel: &Cancel) -> Result<PresentBinding, Unfinished> {
         let (model, region) = (&self.model, &self.region);
         let setup = Setup::of_document(&self.document, region, &model.surface);
+        if let Some((number, why)) = setup.lines.refused() {
+            let name = &setup.handles[*number].name;
+            return Err(Unfinished::Failed(format!("The crease of {name} {why}.")));
+        }
         let problem = Problem {
             revision: self.revision,
             ..setup.problem(model)

@@ -8,6 +8,8 @@
 //! A method with control points (a cage, a lattice) or examples can also bend without handles: then all unpainted
 //! vertices are free, unless some vertices were painted free.
 
+mod branching;
+mod creases;
 mod limb_chain;
 mod limb_joint;
 mod loose;
@@ -24,6 +26,7 @@ use glam::DVec3;
 use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex};
 
+use self::creases::CreaseSearch;
 pub use self::limb_chain::FoundLimb;
 pub(crate) use self::limb_chain::limb_chain;
 pub(crate) use self::limb_joint::limb_joint;
@@ -31,7 +34,7 @@ use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
 use self::part::end_of_part;
 pub(crate) use self::reach::centroid;
-use self::reach::most_of;
+use self::reach::{handle_radius, most_of};
 pub use self::rim::Rim;
 pub(crate) use self::rim::bounded;
 use self::tips::free_tips;
@@ -138,7 +141,8 @@ impl Region {
         let (members, painted) = painted(input, is_locked);
         let mut roles = vec![Role::Fixed; input.paint.len()];
         let (mut handles, mut reaches) = (Vec::new(), Vec::new());
-        let (mut search, mut distances) = (DistanceSearch::default(), Vec::new());
+        let (mut search, mut creases) = (DistanceSearch::default(), CreaseSearch::default());
+        let mut distances = Vec::new();
         let position = |v: SurfaceVertex| surface.positions[v.index()];
         // Per component: whether it is wholly in some handle's ball.
         let (mut within, mut within_this) = (vec![false; painted.len()], vec![true; painted.len()]);
@@ -151,8 +155,16 @@ impl Region {
             let mut limit = most;
             if most > 0.0 {
                 let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
-                let reached = search.within(&surface.triangles, topology, position, &seeds, most);
-                if *reach == Reach::Part {
+                let reached = match *reach {
+                    Reach::Feature | Reach::Creased(_) => {
+                        let radius = handle_radius(surface, topology, members);
+                        creases.within(surface, topology, &seeds, radius, most)
+                    }
+                    Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
+                        search.within(&surface.triangles, topology, position, &seeds, most)
+                    }
+                };
+                if matches!(reach, Reach::Feature | Reach::Part) {
                     distances.resize(surface.positions.len(), f64::NAN);
                     let radius = most / PART_RADII;
                     limit = end_of_part(surface, topology, reached, &mut distances, radius, most);

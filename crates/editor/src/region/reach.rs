@@ -10,9 +10,9 @@ use crate::document::{PART_RADII, Reach};
 /// The most that a reach can be, in world units.
 pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     match reach {
-        Reach::Length(length) => length,
+        Reach::Creased(length) | Reach::Length(length) => length,
         Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
-        Reach::Part => PART_RADII * handle_radius(surface, topology, members),
+        Reach::Feature | Reach::Part => PART_RADII * handle_radius(surface, topology, members),
     }
 }
 
@@ -21,7 +21,7 @@ pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, memb
 ///
 /// Farthest distances or moments would be equally good for one round patch, but a handle of two patches far apart would
 /// then reach across everything between them.
-fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+pub(super) fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     let area_of = |face: u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
     let area: f64 = members
         .iter()

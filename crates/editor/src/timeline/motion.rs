@@ -72,7 +72,8 @@ impl Timeline {
 
 /// The values of a curve at a key.
 pub(crate) fn values_of(curve: &HandleCurve) -> Values {
-    let numbers = curve.twist_deg().iter().chain(curve.scale());
+    let sharpen = curve.crease().map(|crease| crease.sharpen());
+    let numbers = curve.twist_deg().iter().chain(curve.scale()).chain(&sharpen);
     Values {
         vectors: curve.moved().to_vec(),
         numbers: numbers.copied().collect(),
@@ -81,6 +82,8 @@ pub(crate) fn values_of(curve: &HandleCurve) -> Values {
 
 /// The curve with these values; `None` if they make none.
 pub(super) fn with_values(rest: &HandleCurve, values: &Values) -> Option<HandleCurve> {
-    let (twist, scale) = values.numbers.split_at(values.vectors.len());
-    rest.with(values.vectors.clone(), twist.to_vec(), scale.to_vec())
+    let (twist, others) = values.numbers.split_at(values.vectors.len());
+    let (scale, sharpen) = others.split_at(values.vectors.len());
+    let curve = rest.with(values.vectors.clone(), twist.to_vec(), scale.to_vec())?;
+    Some(curve.sharpened(sharpen.first().copied().unwrap_or_default()))
 }

@@ -5,6 +5,7 @@ use super::constraint::Constraint;
 use super::context::Context;
 use super::control_box::ControlBox;
 use super::correct;
+use super::crease_stroke::CreaseStroke;
 use super::curve_stroke::CurveStroke;
 use super::cut_curve::CutCurveStroke;
 use super::cut_line::CutLine;
@@ -111,9 +112,10 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
             stroke.finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, part));
             None
         }
-        ToolMode::PaintHandle if context.settings.draws_curves() && !modifiers.ctrl => {
-            Some(Box::new(CurveStroke::begin(context, pointer, shape)?))
-        }
+        ToolMode::PaintHandle if context.settings.draws_curves() && !modifiers.ctrl => Some(match shape {
+            StrokeShape::Crease => Box::new(CreaseStroke::begin(context, pointer)?),
+            _ => Box::new(CurveStroke::begin(context, pointer, shape)?),
+        }),
         _ if shape.is_line() => {
             let why = "A line makes a handle: choose the Handle tool, or press B for the brush.";
             context.workspace.refuse(why);

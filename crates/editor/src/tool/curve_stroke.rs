@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Curve, SurfaceVertex, triangles_under};
 
 use super::context::Context;
-use super::drawn_path::DrawnPath;
+use super::drawn_path::{DrawnPath, STEP_PX, evenly};
 use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
 use super::overlay::Lit;
@@ -19,16 +19,6 @@ use crate::jobs::Activity;
 use crate::view::{Cursor, Picking, View};
 use crate::workspace::Workspace;
 
-/// The distance between two samples of the stroke, in points.
-const STEP_PX: f64 = 3.0;
-
-/// Ends of a curve on the surface that are so near, in points, close it if it is this long at least.
-const CLOSING_PX: f64 = 16.0;
-const SHORTEST_CLOSED_PX: f64 = 120.0;
-
-/// The way between two control points of a curve on the surface, in points, and their possible numbers.
-const SPACING_PX: f64 = 60.0;
-const CURVE_POINTS: std::ops::RangeInclusive<usize> = 3..=12;
 const SPINE_POINTS: usize = 5;
 
 /// The reach of a spine in half thicknesses, and that of a curve on the surface in its lengths.
@@ -66,16 +56,8 @@ impl CurveStroke {
 
     /// The samples on the surface, evenly along the stroke.
     fn samples(&self, picking: &Picking<'_>) -> Vec<Sample> {
-        let mut samples = Vec::new();
-        for pair in self.path.points_px().windows(2) {
-            let steps = (pair[0].distance(pair[1]) / STEP_PX).ceil().max(1.0);
-            for step in 0..steps as usize {
-                let px = pair[0].lerp(pair[1], step as f64 / steps);
-                samples.extend(self.sample(picking, px));
-            }
-        }
-        samples.extend(self.path.points_px().last().and_then(|px| self.sample(picking, *px)));
-        samples
+        let points_px = self.path.evenly_px(STEP_PX);
+        points_px.filter_map(|px| self.sample(picking, px)).collect()
     }
 
     fn sample(&self, picking: &Picking<'_>, px: DVec2) -> Option<Sample> {
@@ -91,21 +73,17 @@ impl CurveStroke {
     fn drawn(&self, workspace: &Workspace, view: &View) -> Option<Drawn> {
         let picking = workspace.picking(view)?;
         let mut samples = self.samples(&picking);
-        let points_px = self.path.points_px();
-        let length_px: f64 = points_px.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        let ends_px = [points_px.first()?, points_px.last()?];
-        let is_closed = self.shape == StrokeShape::Curve
-            && length_px >= SHORTEST_CLOSED_PX
-            && ends_px[0].distance(*ends_px[1]) <= CLOSING_PX;
+        let is_closed = self.shape == StrokeShape::Curve && self.path.is_closed();
         let count = match self.shape {
             StrokeShape::Spine => SPINE_POINTS,
-            _ => ((length_px / SPACING_PX) as usize + 1).clamp(*CURVE_POINTS.start(), *CURVE_POINTS.end()),
+            _ => self.path.point_count(),
         };
         let half = match self.shape {
             StrokeShape::Spine => to_the_middle(&mut samples, &picking),
             _ => 0.0,
         };
-        let points = evenly(&samples, count, is_closed);
+        let places: Vec<DVec3> = samples.iter().map(|sample| sample.point).collect();
+        let points = evenly(&places, count, is_closed);
         let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
         let curve = HandleCurve::new(points.clone(), is_closed, points, twist_deg, scale).ok()?;
         let (vertices, reach) = match self.shape {
@@ -116,27 +94,6 @@ impl CurveStroke {
             ),
         };
         (!vertices.is_empty()).then_some(Drawn { curve, vertices, reach })
-    }
-}
-
-/// Points at even distances along the samples; a closed line does not come to its first point again.
-fn evenly(samples: &[Sample], count: usize, is_closed: bool) -> Vec<DVec3> {
-    let mut places = vec![0.0];
-    for pair in samples.windows(2) {
-        places.push(places[places.len() - 1] + pair[0].point.distance(pair[1].point));
-    }
-    let whole = places[places.len() - 1];
-    let steps = if is_closed { count } else { count - 1 } as f64;
-    let at = |place: f64| {
-        let next = places.partition_point(|other| *other < place).min(samples.len() - 1);
-        let before = next.saturating_sub(1);
-        let way = places[next] - places[before];
-        let share = if way > 0.0 { (place - places[before]) / way } else { 0.0 };
-        samples[before].point.lerp(samples[next].point, share)
-    };
-    match samples {
-        [] => Vec::new(),
-        _ => (0..count).map(|point| at(whole * point as f64 / steps)).collect(),
     }
 }
 

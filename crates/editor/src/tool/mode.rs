@@ -60,6 +60,8 @@ pub enum StrokeShape {
     Curve,
     /// Those around a curve drawn through the middle of a limb, which they then follow.
     Spine,
+    /// Those beside a curve along the crease or the border that a stroke means, which they then follow.
+    Crease,
     /// Those of the outline beside a line that draws the outline anew.
     Sketch,
 }
@@ -67,7 +69,7 @@ pub enum StrokeShape {
 impl StrokeShape {
     /// Returns true if a stroke draws a line that a new handle follows.
     pub(crate) fn is_line(self) -> bool {
-        matches!(self, Self::Curve | Self::Spine | Self::Sketch)
+        matches!(self, Self::Curve | Self::Spine | Self::Crease | Self::Sketch)
     }
 }
 

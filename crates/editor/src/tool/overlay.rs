@@ -137,7 +137,7 @@ impl Overlay {
             is_over_surface = true;
             takes_handle = lit == Lit::Pointed && is_taken_along(workspace, settings, &pick, pointer.modifiers);
             let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
-                && settings.stroke_shape == StrokeShape::Brush;
+                && matches!(settings.stroke_shape, StrokeShape::Brush | StrokeShape::Crease);
             if has_ring && !settings.waits_for_press() && !takes_handle {
                 line = ring(&picking, pointer.position_px, &pick, &settings.brush());
                 if let Some(share) = settings.soft_share() {

@@ -16,6 +16,8 @@ pub(crate) struct Widen {
     transaction: Transaction,
     handle: HandleId,
     start_length: f64,
+    /// The reach of a length, of the same kind as it was at the beginning.
+    make: fn(f64) -> Reach,
     start_px: f64,
     centre_px: DVec2,
 }
@@ -25,8 +27,10 @@ impl Widen {
     pub(crate) fn begin(workspace: &mut Workspace, view: &View, pointer: Option<Pointer>) -> Option<Self> {
         let handle = workspace.selected()?.clone();
         let start_length = match handle.reach {
-            Reach::Length(length) => length,
-            Reach::Part | Reach::Radii(_) => workspace.computed().region.reach_length(handle.id).unwrap_or(0.0),
+            Reach::Creased(length) | Reach::Length(length) => length,
+            Reach::Feature | Reach::Part | Reach::Radii(_) => {
+                workspace.computed().region.reach_length(handle.id).unwrap_or(0.0)
+            }
         };
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
         let centre_px = camera.project(handle.centre(), viewport_px)?;
@@ -37,6 +41,10 @@ impl Widen {
             transaction: workspace.begin(format!("Reach of {}", handle.name)),
             handle: handle.id,
             start_length: start_length.max(px),
+            make: match handle.reach {
+                Reach::Feature | Reach::Creased(_) => Reach::Creased,
+                Reach::Part | Reach::Radii(_) | Reach::Length(_) => Reach::Length,
+            },
             start_px: pointer_px.distance(centre_px).max(8.0),
             centre_px,
         })
@@ -54,7 +62,7 @@ impl Gesture for Widen {
 
     fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
         let length = match workspace.document.handle(self.handle).map(|handle| handle.reach) {
-            Some(Reach::Length(length)) => length,
+            Some(Reach::Creased(length) | Reach::Length(length)) => length,
             _ => self.start_length,
         };
         Some(format!(
@@ -64,7 +72,7 @@ impl Gesture for Widen {
 
     fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
         let factor = pointer.position_px.distance(self.centre_px).max(1.0) / self.start_px;
-        let reach = Reach::Length(self.start_length * factor);
+        let reach = (self.make)(self.start_length * factor);
         let workspace = &mut *context.workspace;
         if workspace
             .document

@@ -1,7 +1,9 @@
 //! Changes of the control points of the selected handle's curve: more of them or fewer, their pins and their limits.
 
 use super::state::Workspace;
-use crate::document::{FREE_BEND_DEG, HandleCurve, HandleId, HandleLine, is_bend_range_deg, put_curve};
+use crate::document::{
+    Crease, FREE_BEND_DEG, HandleCurve, HandleId, HandleLine, SHARPEN_RANGE, is_bend_range_deg, put_curve,
+};
 
 /// The most control points of a curve that is drawn and divided by hand.
 const MOST_POINTS: usize = 64;
@@ -17,7 +19,7 @@ pub(crate) fn divide_curve(workspace: &mut Workspace) {
     let selected = &workspace.controls;
     let is_divided = |point: usize| selected.is_empty() || selected.contains(point as u32);
     let (rest_places, moved_places) = (curve.rest().point_places(), motion.moved().point_places());
-    let mut lists = Lists::default();
+    let mut lists = Lists::of(&curve);
     for point in 0..count {
         lists.copy(&curve, point);
         let is_last = point + 1 == count;
@@ -52,7 +54,7 @@ pub(crate) fn remove_curve_points(workspace: &mut Workspace) {
         return;
     };
     let selected = &workspace.controls;
-    let mut lists = Lists::default();
+    let mut lists = Lists::of(&curve);
     for point in (0..curve.rest().points().len()).filter(|point| !selected.contains(*point as u32)) {
         lists.copy(&curve, point);
     }
@@ -106,6 +108,21 @@ pub(crate) fn set_bend_range(workspace: &mut Workspace, range_deg: [f64; 2]) {
     });
 }
 
+/// Makes the crease along the curve sharper or flatter than at rest.
+pub(crate) fn sharpen_crease(workspace: &mut Workspace, sharpen: f64) {
+    let Some((handle, curve)) = selected_curve(workspace).filter(|(_, curve)| curve.crease().is_some()) else {
+        return;
+    };
+    if !SHARPEN_RANGE.contains(&sharpen) {
+        let (flat, sharp) = (SHARPEN_RANGE.start(), SHARPEN_RANGE.end());
+        workspace.refuse(format!("The crease is out of range: enter {flat} (flat) to {sharp}."));
+        return;
+    }
+    workspace.change("Sharpen the crease", |document| {
+        put_curve(document, handle, curve.sharpened(sharpen));
+    });
+}
+
 /// Changes the joints of a handle's curve and of its twin's.
 fn change_joints(workspace: &mut Workspace, name: &str, handle: HandleId, change: impl Fn(HandleCurve) -> HandleCurve) {
     let twin = workspace.document.handle(handle).and_then(|handle| handle.twin);
@@ -136,9 +153,18 @@ struct Lists {
     scale: Vec<f64>,
     pinned: Vec<u32>,
     bends_deg: Vec<[f64; 2]>,
+    crease: Option<Crease>,
 }
 
 impl Lists {
+    /// Those without a point, of the crease along a curve.
+    fn of(curve: &HandleCurve) -> Self {
+        Self {
+            crease: curve.crease(),
+            ..Self::default()
+        }
+    }
+
     fn copy(&mut self, curve: &HandleCurve, point: usize) {
         if curve.pinned().contains(&(point as u32)) {
             self.pinned.push(self.points.len() as u32);
@@ -155,7 +181,10 @@ impl Lists {
         let curve = HandleCurve::new(self.points, is_closed, self.moved, self.twist_deg, self.scale);
         let Ok(curve) = curve else { return };
         workspace.controls.put([]);
-        let curve = curve.pinned_at(self.pinned).bent_within(self.bends_deg);
+        let curve = curve
+            .pinned_at(self.pinned)
+            .bent_within(self.bends_deg)
+            .creased(self.crease);
         workspace.change(name, |document| put_curve(document, handle, curve));
     }
 }

@@ -38,7 +38,9 @@ pub(crate) use colours::{light_part, region_colour, rims, tint_limb};
 pub(crate) use controls::{
     bring as bring_attachment, make as make_controls, middle, put_attachment, reset as reset_controls,
 };
-pub(crate) use curves::{divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range};
+pub(crate) use curves::{
+    divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
+};
 pub(crate) use examples::{add_example, keep_example, remove_example, rename_example, set_example_weight};
 pub(crate) use freedom::{aim_free_handles, free_or_hold_selected};
 pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};

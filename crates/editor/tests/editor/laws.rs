@@ -74,7 +74,13 @@ fn act(rig: &mut Rig, random: &mut Random) {
         9 => rig.undo(),
         10 => rig.redo(),
         11 => {
-            let reach = [Reach::Radii(2.0), Reach::Length(0.3), Reach::Radii(4.0)][random.below(3) as usize];
+            let reaches = [
+                Reach::Radii(2.0),
+                Reach::Length(0.3),
+                Reach::Creased(0.4),
+                Reach::Radii(4.0),
+            ];
+            let reach = reaches[random.below(4) as usize];
             if let Some(id) = rig.editor.view().selected {
                 unmoved(rig, |rig| rig.command(Command::SetReach(id, reach)));
             }

@@ -29,6 +29,7 @@ mod objects;
 mod pose;
 mod poses;
 mod project;
+mod reach;
 mod rig;
 mod rigid_paint;
 mod session;

@@ -1,24 +1,11 @@
 //! The concavity of a surface at a scale: how fast its smoothed normals turn towards each other.
 //!
-//! Parts of a shape end in concave creases, by the minima rule of human vision [HR84]. Scans have such creases at every
-//! size, down to their noise, so the normals are smoothed first: (1 − σ² Δ) N = n, with n the normals of the vertices and
-//! Δ the mean of the neighbours less the vertex, over a quarter of its mean squared edge. Chebyshev's semi-iteration
-//! [GV61] solves this in some σ/h rounds, h an edge's length, where repeated averages would take (σ/h)².
+//! Parts of a shape end in concave creases, by the minima rule of human vision [HR84].
 
 use glam::DVec3;
-use rayon::prelude::*;
 
+use super::smooth_normals::SomeVertices;
 use crate::{SurfaceVertex, Topology};
-
-/// Rounds of the iteration over the square root of the largest weight of the neighbours. The error falls to less than a
-/// hundredth, 1/cosh(4 √2): what is left of it alternates in sign, so it would show as creases beside each edge.
-const ROUNDS: f64 = 4.0;
-
-/// The largest weight of the neighbours, which bounds the rounds to 80: a scale is at most ten edges long.
-const MOST_WEIGHT: f64 = 400.0;
-
-/// Vertices that one thread takes at a time, at least.
-const PIECE: usize = 1 << 12;
 
 /// The concavity of the surface at each of some vertices, in radians per world unit: the largest rate over its edges at
 /// which the normals, smoothed over the length `scale`, turn towards each other; 0 where the surface is flat or convex.
@@ -30,78 +17,18 @@ pub fn concavities(
     vertices: &[SurfaceVertex],
     scale: f64,
 ) -> Vec<f64> {
-    let mut places = vec![u32::MAX; positions.len()];
-    for (place, v) in (0..).zip(vertices) {
-        places[v.index()] = place;
-    }
-    let own = |v: &SurfaceVertex| Some(places[v.index()]).filter(|&place| place != u32::MAX);
-    let neighbours = |place: usize| topology.neighbours(vertices[place]).iter().filter_map(own);
-    let position = |place: u32| positions[vertices[place as usize].index()];
-    let of_each = || (0..vertices.len()).into_par_iter().with_min_len(PIECE);
-    let normal = |place: usize| {
-        let faces = topology.faces(vertices[place], triangles);
-        let corners = faces.map(|face| triangles[face as usize].map(|v| positions[v.index()]));
-        corners
-            .map(|[a, b, c]| (b - a).cross(c - a))
-            .sum::<DVec3>()
-            .normalize_or_zero()
-    };
-    let weight = |place: usize| {
-        let here = position(place as u32);
-        let squares = neighbours(place).map(|other| here.distance_squared(position(other)));
-        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-        // Without neighbours, or at one point with them, nothing is smoothed.
-        let weight = 4.0 * scale * scale * count / sum;
-        if weight.is_finite() {
-            weight.min(MOST_WEIGHT)
-        } else {
-            0.0
-        }
-    };
-    let normals: Vec<DVec3> = of_each().map(normal).collect();
-    let weights: Vec<f64> = of_each().map(weight).collect();
-    let mean = |present: &[DVec3], place: usize| {
-        let sum: DVec3 = neighbours(place).map(|other| present[other as usize]).sum();
-        sum / (neighbours(place).count().max(1)) as f64
-    };
-    let smooth = smoothed(&normals, &weights, mean);
+    let some = SomeVertices::of(topology, positions, vertices);
+    let smooth = some.normals(triangles, scale);
     let concavity = |place: usize| {
-        let (here, normal) = (position(place as u32), smooth[place]);
-        let rate = |other: u32| {
-            let edge = position(other) - here;
-            (normal - smooth[other as usize]).dot(edge) / edge.length_squared()
+        let (here, normal) = (some.position(place), smooth[place]);
+        let rate = |other: usize| {
+            let edge = some.position(other) - here;
+            (normal - smooth[other]).dot(edge) / edge.length_squared()
         };
         // `max` leaves out NaN, of edges without a length.
-        neighbours(place).map(rate).fold(0.0, f64::max)
+        some.neighbours(place).map(rate).fold(0.0, f64::max)
     };
-    of_each().map(concavity).collect()
-}
-
-/// The unit normals N with (1 + w) N − w `mean`(N) = n, nearly: w are the weights and n the normals.
-fn smoothed(normals: &[DVec3], weights: &[f64], mean: impl Fn(&[DVec3], usize) -> DVec3 + Sync) -> Vec<DVec3> {
-    let most = weights.iter().copied().fold(0.0, f64::max);
-    // The largest factor by which an average shrinks an error.
-    let shrinks = most / (1.0 + most);
-    let (mut before, mut present) = (normals.to_vec(), normals.to_vec());
-    let mut ahead = 1.0;
-    for round in 0..(ROUNDS * most.sqrt()).ceil() as usize {
-        let next = (0..normals.len()).into_par_iter().with_min_len(PIECE).map(|place| {
-            let share = weights[place] / (1.0 + weights[place]);
-            let averaged = normals[place].lerp(mean(&present, place), share);
-            before[place] + (averaged - before[place]) * ahead
-        });
-        let next: Vec<DVec3> = next.collect();
-        (before, present) = (present, next);
-        ahead = match round {
-            0 => 1.0 / (1.0 - 0.5 * shrinks * shrinks),
-            _ => 1.0 / (1.0 - 0.25 * shrinks * shrinks * ahead),
-        };
-    }
-    present
-        .par_iter_mut()
-        .with_min_len(PIECE)
-        .for_each(|normal| *normal = normal.normalize_or_zero());
-    present
+    some.each(concavity)
 }
 
 #[cfg(test)]

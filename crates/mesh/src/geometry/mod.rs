@@ -4,12 +4,14 @@
 //! there are no positions.
 
 mod areas;
+mod clusters;
 mod concavity;
 mod curvature;
 mod damage;
 mod distortion;
 mod gradient;
 mod normals;
+mod smooth_normals;
 mod triangle_distance;
 mod triangle_intersection;
 mod vector3;
@@ -25,6 +27,7 @@ pub use damage::{Damage, Damaged, point_in_words};
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
+pub(crate) use smooth_normals::SomeVertices;
 pub(crate) use triangle_distance::{distance_to_triangle, nearest_on_triangle};
 pub(crate) use triangle_intersection::triangle_intersection;
 pub use vector3::Vector3;

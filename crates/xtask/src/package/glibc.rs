@@ -30,20 +30,36 @@ pub struct Linked {
 }
 
 /// `cargo rustc` with Zig's linker on Linux, if it is installed, and otherwise with the system's.
-pub fn rustc() -> Linked {
+///
+/// # Errors
+/// One sentence, if only a part of it is installed.
+pub fn rustc() -> Result<Linked, String> {
     let Ok(zig) = ZIG.find() else {
-        return system();
+        return Ok(system());
     };
     if !cfg!(all(target_os = "linux", target_env = "gnu")) {
-        return system();
+        return Ok(system());
     }
+    check_compiler(&zig)?;
     let target = format!("{}-unknown-linux-gnu", std::env::consts::ARCH);
     let mut command = Command::new(zig);
     command.current_dir(crate::root::root());
     command.args(["rustc", "--target", &format!("{target}.{OLDEST}")]);
-    Linked {
+    Ok(Linked {
         command,
         folder: target_folder().join(target).join("dist"),
+    })
+}
+
+/// Checks that cargo-zigbuild finds Zig's compiler. Cargo would show its backtrace in mid-build otherwise.
+fn check_compiler(zig: &Path) -> Result<(), String> {
+    let answer = Command::new(zig).args(["zig", "cc", "--", "--version"]).output();
+    match answer {
+        Ok(answer) if answer.status.success() => Ok(()),
+        _ => Err(format!(
+            "{} is installed, and finds no Zig: pip install ziglang, in a Python whose programs are in PATH.",
+            ZIG.program
+        )),
     }
 }
 

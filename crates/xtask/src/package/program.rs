@@ -53,7 +53,7 @@ pub fn compile(link_arguments: &[String]) -> Result<PathBuf, String> {
     let Linked {
         command: mut rustc,
         folder,
-    } = glibc::rustc();
+    } = glibc::rustc()?;
     rustc.args([
         "--locked",
         "--profile",

@@ -49,6 +49,10 @@ fn settings(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 StrokeShape::Brush => brush(ui, view.brush_radius_px, view.brush_metric, commands),
                 StrokeShape::Lasso | StrokeShape::Box => depth(ui, view.depth, commands),
                 StrokeShape::Component | StrokeShape::Sketch => {}
+                StrokeShape::Crease => {
+                    brush_radius(ui, view.brush_radius_px, commands);
+                    return curve(ui, editor, commands);
+                }
                 StrokeShape::Curve | StrokeShape::Spine => return curve(ui, editor, commands),
             }
         }
@@ -81,13 +85,14 @@ fn curve(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 const ROOMY: f32 = 620.0;
 
 fn stroke_shape(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    const SHAPES: [StrokeShape; 7] = [
+    const SHAPES: [StrokeShape; 8] = [
         StrokeShape::Brush,
         StrokeShape::Lasso,
         StrokeShape::Box,
         StrokeShape::Component,
         StrokeShape::Curve,
         StrokeShape::Spine,
+        StrokeShape::Crease,
         StrokeShape::Sketch,
     ];
     let present = editor.view().stroke_shape;
@@ -111,8 +116,8 @@ fn stroke_shape(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.spacing_mut().item_spacing.x = 8.0;
 }
 
-/// The brush's radius, and the measure of distance from its centre.
-fn brush(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
+/// The brush's radius.
+fn brush_radius(ui: &mut egui::Ui, mut radius_px: f64, commands: &mut Outbox) {
     let label = bar_label(ui, "Radius");
     let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
         let slider = slid(ui, radius_px, 4.0..=200.0, &[("px", 1.0)]);
@@ -124,6 +129,11 @@ fn brush(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &
     if slider.changed() {
         commands.push(Command::SetBrushRadius(radius_px));
     }
+}
+
+/// The brush's radius, and the measure of distance from its centre.
+fn brush(ui: &mut egui::Ui, radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
+    brush_radius(ui, radius_px, commands);
     const METRICS: [(BrushMetric, &str, &str); 4] = [
         (
             BrushMetric::Round,

@@ -7,7 +7,7 @@ use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
 
-use super::bend;
+use super::{bend, crease};
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::icon::{Icon, toggle};
 use crate::window::widgets::number_field::{DEGREES, LENGTHS, Unit, dragged, number_field};
@@ -193,6 +193,7 @@ fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut O
             depth(ui, editor, handle, commands);
             parent(ui, editor, handle, commands);
             bend::show(ui, editor, commands);
+            crease::show(ui, editor, commands);
         });
 }
 
@@ -277,17 +278,25 @@ fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
 
 fn reach(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     let label = row_label(ui, "Reach");
+    let found = editor.reach_length(handle.id).unwrap_or_default();
     let (mut value, suffix, units, most, make): (f64, _, &[Unit], _, fn(f64) -> Reach) = match handle.reach {
-        Reach::Part => {
-            let length = editor.reach_length(handle.id).unwrap_or_default();
-            (length, " (part)", LENGTHS, f64::MAX, Reach::Length)
-        }
+        Reach::Feature => (found, " (feature)", LENGTHS, f64::MAX, Reach::Creased),
+        Reach::Creased(length) => (length, "", LENGTHS, f64::MAX, Reach::Creased),
+        Reach::Part => (found, " (part)", LENGTHS, f64::MAX, Reach::Length),
         Reach::Radii(radii) => (radii, " radii", &[("radii", 1.0)], 50.0, Reach::Radii),
         Reach::Length(length) => (length, "", LENGTHS, f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
-    let hover = "Sets the distance along the surface within which it follows this handle. Without a number of yours it \
-                 ends a little beyond the part that the handle is on.";
+    let hover = match handle.reach {
+        Reach::Feature | Reach::Creased(_) => {
+            "Sets the distance along the surface within which it follows this handle. Without a number of yours it ends \
+             with the feature that the handle is on, where the surface widens or in a crease. Ways across creases count \
+             as longer."
+        }
+        Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
+            "Sets the distance along the surface within which it follows this handle."
+        }
+    };
     let field = number_field(ui, &mut value, |ui, value| {
         let field = dragged(ui, value, units).range(0.0..=most).speed(speed);
         ui.add(field.max_decimals(3).suffix(suffix))

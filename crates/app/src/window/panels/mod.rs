@@ -2,6 +2,7 @@
 //! or with objects, history and file.
 
 mod bend;
+mod crease;
 mod examples;
 pub(in crate::window) mod file;
 pub(in crate::window) mod handles;

@@ -64,6 +64,8 @@ enum StoredPivotPlace {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum StoredReach {
+    Feature,
+    Creased(f64),
     Part,
     Radii(f64),
     Length(f64),
@@ -111,6 +113,8 @@ impl StoredHandle {
                 PivotPlace::Picked => StoredPivotPlace::Picked,
             },
             reach: match handle.reach {
+                Reach::Feature => StoredReach::Feature,
+                Reach::Creased(length) => StoredReach::Creased(length),
                 Reach::Part => StoredReach::Part,
                 Reach::Radii(radii) => StoredReach::Radii(radii),
                 Reach::Length(length) => StoredReach::Length(length),
@@ -144,8 +148,10 @@ impl StoredHandle {
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
         let is_reach_refused = match self.reach {
-            StoredReach::Part => false,
-            StoredReach::Radii(size) | StoredReach::Length(size) => !(size.is_finite() && size >= 0.0),
+            StoredReach::Feature | StoredReach::Part => false,
+            StoredReach::Creased(size) | StoredReach::Radii(size) | StoredReach::Length(size) => {
+                !(size.is_finite() && size >= 0.0)
+            }
         };
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
@@ -180,6 +186,8 @@ impl StoredHandle {
                 StoredPivotPlace::Picked => PivotPlace::Picked,
             },
             reach: match self.reach {
+                StoredReach::Feature => Reach::Feature,
+                StoredReach::Creased(length) => Reach::Creased(length),
                 StoredReach::Part => Reach::Part,
                 StoredReach::Radii(radii) => Reach::Radii(radii),
                 StoredReach::Length(length) => Reach::Length(length),

@@ -1,0 +1,25 @@
+//! The sharpness of a crease in numbers.
+
+use eframe::egui;
+use pliant_editor::{Command, Editor, SHARPEN_RANGE};
+
+use crate::window::widgets::number_field::{number_field, slid};
+use crate::window::widgets::outbox::Outbox;
+use crate::window::widgets::row_label::row_label;
+
+/// Shows how sharp the crease along the handle's curve is, if it has one.
+pub(super) fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let Some(crease) = editor.selected_crease() else {
+        return;
+    };
+    let label = row_label(ui, "Sharpen");
+    let mut sharpen = crease.sharpen();
+    let field = number_field(ui, &mut sharpen, |ui, value| {
+        ui.add(slid(ui, value, SHARPEN_RANGE, &[]).fixed_decimals(2))
+    });
+    let field = field.labelled_by(label.id).on_hover_text(
+        "Makes the crease sharper than at rest, or flatter: -1 is flat, 0 as it was and 1 twice as sharp.",
+    );
+    commands.adjust(&field, || Command::SharpenCrease(sharpen));
+    ui.end_row();
+}
