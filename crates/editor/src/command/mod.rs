@@ -12,6 +12,7 @@ mod entry;
 mod examples;
 mod flow;
 mod handle;
+mod held_part;
 mod key_map;
 mod look;
 mod mesh;

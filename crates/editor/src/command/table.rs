@@ -9,8 +9,8 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{
-    animation, controls, curves, document, examples, flow, handle, look, mesh, object, paint, pose, region, transform,
-    view,
+    animation, controls, curves, document, examples, flow, handle, held_part, look, mesh, object, paint, pose, region,
+    transform, view,
 };
 use crate::cut::KeptSide;
 use crate::document::{
@@ -374,15 +374,15 @@ commands! {
     /// Cuts along the curve on the surface that the next drag draws; the positive side is to its left, seen along it.
     CutAlongCurve(kept: KeptSide) = mesh::CUT_ALONG_CURVE;
     /// Mirrors the part that the selected handle holds, across axis 0, 1, 2 of the handle for x, y, z.
-    MirrorPart(axis: usize) = mesh::MIRROR_PART;
+    MirrorPart(axis: usize) = held_part::MIRROR_PART;
     /// Joins the part that the selected handle holds to the others, at the nearest borders.
-    Merge = mesh::MERGE;
+    Merge = held_part::MERGE;
     /// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
-    MergePicked = mesh::MERGE_PICKED;
+    MergePicked = held_part::MERGE_PICKED;
     /// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
-    MergePairs = mesh::MERGE_PAIRS;
+    MergePairs = held_part::MERGE_PAIRS;
     /// Chooses how parts are merged; the reach is clamped to [`REACH_RANGE`](crate::REACH_RANGE).
-    SetMerge(settings: MergeSettings) = mesh::SET_MERGE;
+    SetMerge(settings: MergeSettings) = held_part::SET_MERGE;
     /// Changes the mesh.
     ChangeMesh(change: MeshChange) = mesh::CHANGE_MESH;
     /// Frames everything.

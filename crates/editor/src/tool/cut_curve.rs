@@ -7,21 +7,19 @@ use glam::{DVec2, DVec3};
 
 use super::context::Context;
 use super::cut_side::CutSide;
-use super::drawn_path::{DrawnPath, crossed_loop, length_px, simplified};
+use super::drawn_path::{CLOSING_PX, DrawnPath, STEP_PX};
 use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
+use super::polyline::{crossed_loop, length_px, simplified};
 use crate::cut::{CutCurve, CutSight, KeptSide};
 use crate::input::{Button, Pointer};
 use crate::stitching::MeshChange;
 use crate::view::{Cursor, Picking, Projection, Ray, View, distance_to_segment};
 use crate::workspace::Workspace;
 
-/// The distance between two samples of the curve, in points.
-const STEP_PX: f64 = 3.0;
 /// The curve may leave its samples by this distance, in points.
 const SLACK_PX: f64 = 0.75;
-/// Ends that are so near, in points, close a curve that is this long at least.
-const CLOSING_PX: f64 = 16.0;
+/// A shorter curve, in points, is none.
 const SHORTEST_PX: f64 = 40.0;
 /// A loop that is at least this share of the whole curve is the curve; its tails are left out.
 const MOST: f64 = 0.7;

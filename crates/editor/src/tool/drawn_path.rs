@@ -2,14 +2,14 @@
 
 use glam::{DVec2, DVec3};
 
+use super::polyline::length_px;
 use crate::input::Pointer;
-use crate::view::distance_to_segment;
 
 /// The distance between two samples of a stroke along the surface, in points.
 pub(super) const STEP_PX: f64 = 3.0;
 
 /// Ends that are so near, in points, close a line that is this long at least.
-const CLOSING_PX: f64 = 16.0;
+pub(super) const CLOSING_PX: f64 = 16.0;
 const SHORTEST_CLOSED_PX: f64 = 120.0;
 
 /// The way between two control points of a curve along the surface, in points, and their possible numbers.
@@ -58,16 +58,12 @@ impl DrawnPath {
     pub(super) fn is_closed(&self) -> bool {
         let ends = self.points_px.first().zip(self.points_px.last());
         let are_near = ends.is_some_and(|(first, last)| first.distance(*last) <= CLOSING_PX);
-        are_near && self.length_px() >= SHORTEST_CLOSED_PX
+        are_near && length_px(&self.points_px) >= SHORTEST_CLOSED_PX
     }
 
     /// The number of the control points of a curve along it.
     pub(super) fn point_count(&self) -> usize {
-        ((self.length_px() / SPACING_PX) as usize + 1).clamp(*POINTS.start(), *POINTS.end())
-    }
-
-    fn length_px(&self) -> f64 {
-        length_px(&self.points_px)
+        ((length_px(&self.points_px) / SPACING_PX) as usize + 1).clamp(*POINTS.start(), *POINTS.end())
     }
 
     /// The line as an outline, which is closed: the way back covers the line that would close it.
@@ -98,45 +94,5 @@ pub(super) fn evenly(line: &[DVec3], count: usize, is_closed: bool) -> Vec<DVec3
     match line {
         [] => Vec::new(),
         _ => (0..count).map(|point| at(whole * point as f64 / steps)).collect(),
-    }
-}
-
-/// The length of a line, in points.
-pub(super) fn length_px(line: &[DVec2]) -> f64 {
-    line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
-}
-
-/// The longest loop of a line that crosses itself, from the crossing around to its last point before it; `None` if it
-/// does not cross itself.
-pub(super) fn crossed_loop(line: &[DVec2]) -> Option<Vec<DVec2>> {
-    let segments = line.len().saturating_sub(1);
-    let pairs = (0..segments).flat_map(|from| (from + 2..segments).map(move |to| (from, to)));
-    let crossing = |(from, to): (usize, usize)| {
-        let (a, b, c, d) = (line[from], line[from + 1], line[to], line[to + 1]);
-        let across = (b - a).perp_dot(d - c);
-        let [own, other] = [(c - a).perp_dot(d - c) / across, (c - a).perp_dot(b - a) / across];
-        let is_inside = (0.0..=1.0).contains(&own) && (0.0..=1.0).contains(&other);
-        is_inside.then(|| (from, to, a.lerp(b, own)))
-    };
-    let (from, to, at) = pairs.filter_map(crossing).max_by_key(|(from, to, _)| to - from)?;
-    Some(std::iter::once(at).chain(line[from + 1..=to].iter().copied()).collect())
-}
-
-/// The points of a line that are needed so that no other is further from it than this, by the division of Douglas and Peucker.
-pub(super) fn simplified(line: &[DVec2], slack_px: f64) -> Vec<DVec2> {
-    let [first, inner @ .., last] = line else {
-        return line.to_vec();
-    };
-    let away = |(_, point): &(usize, &DVec2)| distance_to_segment(**point, *first, *last);
-    let farthest = inner.iter().enumerate().max_by(|a, b| away(a).total_cmp(&away(b)));
-    match farthest {
-        Some(farthest) if away(&farthest) > slack_px => {
-            let middle = farthest.0 + 1;
-            let mut kept = simplified(&line[..=middle], slack_px);
-            kept.pop();
-            kept.extend(simplified(&line[middle..], slack_px));
-            kept
-        }
-        _ => vec![*first, *last],
     }
 }

@@ -36,6 +36,7 @@ mod outline;
 mod overlay;
 mod paint;
 mod picked_pairs;
+mod polyline;
 mod pose;
 mod pulled_curve;
 mod rim;

@@ -108,7 +108,9 @@ impl Rims {
         let held = held_parts(workspace);
         let is_held = |vertex: SurfaceVertex| held.contains(&model.topology.component(vertex));
         let may_follow = |rim: &Vec<SurfaceVertex>| match wanted {
-            RimUse::Merge { .. } | RimUse::MergePairs { .. } => rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first)),
+            RimUse::Merge { .. } | RimUse::MergePairs { .. } => {
+                rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first))
+            }
             RimUse::Bridge { .. } | RimUse::Fill => !rim.contains(&first),
         };
         self.loops.iter().map(may_follow).collect()
