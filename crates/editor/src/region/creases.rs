@@ -28,6 +28,8 @@ pub(super) struct CreaseSearch {
     stretch: Vec<f64>,
     /// Scratch memory of one NaN a vertex.
     distances: Vec<f64>,
+    /// The vertices within plain distance.
+    plain: Vec<(SurfaceVertex, f64)>,
 }
 
 impl CreaseSearch {
@@ -45,14 +47,14 @@ impl CreaseSearch {
             search,
             stretch,
             distances,
+            plain,
         } = self;
         let position = |v: SurfaceVertex| -> DVec3 { surface.positions[v.index()] };
-        let mut plain = search
-            .within(&surface.triangles, topology, position, members, most)
-            .to_vec();
+        plain.clear();
+        plain.extend_from_slice(search.within(&surface.triangles, topology, position, members, most));
         distances.resize(surface.positions.len(), f64::NAN);
-        if is_on_limb(surface, topology, &plain, distances, radius) {
-            return search.within(&surface.triangles, topology, position, members, most);
+        if is_on_limb(surface, topology, plain, distances, radius) {
+            return plain;
         }
         // In the mesh's order neighbours are near each other in memory, too.
         plain.sort_unstable_by_key(|&(vertex, _)| vertex);
