@@ -4,13 +4,11 @@ use glam::DVec3;
 use serde::Deserialize;
 
 use super::edit_error::EditError;
-use super::edit_file::EDIT_VERSION;
 use super::json::parse;
-
 use super::reader::read;
 use super::transform::Numbers;
+use super::version::check_version;
 use crate::cut::{CutCurve, CutSight};
-use crate::warning::shortened;
 
 /// The members in the file.
 #[derive(Deserialize)]
@@ -34,13 +32,7 @@ impl CutCurve {
 
     fn read(text: &str) -> Result<Self, EditError> {
         let value = parse(text)?;
-        if let Some(found) = value.get("version")
-            && found.as_u64() != Some(EDIT_VERSION)
-        {
-            return Err(EditError::Version {
-                found: shortened(&found.to_string()),
-            });
-        }
+        check_version(&value)?;
         let stored: StoredCutCurve = read(&value)?;
         Ok(Self {
             points: stored.points.iter().map(|point| DVec3::from_array(point.0)).collect(),

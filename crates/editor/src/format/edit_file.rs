@@ -23,12 +23,9 @@ use super::reader::read;
 use super::selector::Selector;
 use super::strength::strength_kind;
 use super::transform::optional_vector;
+use super::version::{EDIT_VERSION, check_version};
 use crate::HandleTransform;
 use crate::document::{HandleCurve, HandleLine, HandleSketch};
-use crate::warning::shortened;
-
-/// The version of the edit format for reading and writing.
-pub const EDIT_VERSION: u64 = 1;
 
 /// The smallest and the largest stiffness of an edit.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
@@ -223,14 +220,7 @@ impl EditFile {
     /// # Errors
     /// Those of [`EditFile::parse`].
     pub fn from_value(value: &Value) -> Result<Self, EditError> {
-        // The version comes first: another one may have members that this one lacks.
-        if let Some(found) = value.get("version")
-            && found.as_u64() != Some(EDIT_VERSION)
-        {
-            return Err(EditError::Version {
-                found: shortened(&found.to_string()),
-            });
-        }
+        check_version(value)?;
         read(value)
             .and_then(Self::of_stored)
             .map_err(|error| error.at("the edit"))

@@ -5,12 +5,11 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::edit_error::EditError;
-use super::edit_file::EDIT_VERSION;
 use super::json::parse;
 use super::reader::read;
 use super::selector::Selector;
 use super::transform::vector;
-use crate::warning::shortened;
+use super::version::check_version;
 
 /// The most steps of a flow.
 const MOST_STEPS: f64 = 100_000.0;
@@ -155,13 +154,7 @@ impl FlowFile {
     }
 
     fn read(value: &Value) -> Result<Self, EditError> {
-        if let Some(found) = value.get("version")
-            && found.as_u64() != Some(EDIT_VERSION)
-        {
-            return Err(EditError::Version {
-                found: shortened(&found.to_string()),
-            });
-        }
+        check_version(value)?;
         let stored: StoredFlow = read(value)?;
         for (number, DyeEntry { select, color }) in stored.dye.iter().enumerate() {
             let place = |error: EditError, member: &str| error.under(member).under(&format!("dye[{number}]"));

@@ -5,13 +5,12 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::edit_error::EditError;
-use super::edit_file::EDIT_VERSION;
 use super::json::parse;
 use super::method::read_method;
 use super::reader::read;
 use super::selector::Selector;
+use super::version::check_version;
 use crate::HandleTransform;
-use crate::warning::shortened;
 
 /// The joins of two shapes, A and B.
 #[derive(Clone, PartialEq, Debug)]
@@ -110,13 +109,7 @@ impl JoinsFile {
 
     fn read(text: &str) -> Result<Self, EditError> {
         let value = parse(text)?;
-        if let Some(found) = value.get("version")
-            && found.as_u64() != Some(EDIT_VERSION)
-        {
-            return Err(EditError::Version {
-                found: shortened(&found.to_string()),
-            });
-        }
+        check_version(&value)?;
         let stored: StoredJoins = read(&value)?;
         let of_part =
             |selector: &Selector, part: &str| selector.check().map_err(|error| error.under("delete").under(part));

@@ -38,11 +38,12 @@ mod spans;
 pub(crate) mod stored_field;
 mod strength;
 mod transform;
+mod version;
 
 pub use attachment::AttachmentEntry;
 pub use beginning::Beginning;
 pub use edit_error::EditError;
-pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};
+pub use edit_file::{EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};
 pub use examples::{ExampleEntry, ExampleSource};
 pub use exchange::ExportError;
 pub(crate) use exchange::export;
@@ -59,3 +60,4 @@ pub use project::{MeshReference, Project, StoredKept, digest, geometry_hash};
 pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};
 pub use strength::STRENGTH_RANGE;
+pub use version::EDIT_VERSION;
