@@ -33,6 +33,15 @@ pub(crate) fn is_bend_range_deg([least, most]: [f64; 2]) -> bool {
 }
 
 impl HandleCurve {
+    /// The curve through `points`, in world units, which moves nothing yet.
+    ///
+    /// # Errors
+    /// As in [`HandleCurve::new`].
+    pub(crate) fn at_rest_through(points: Vec<DVec3>, is_closed: bool) -> Result<Self, (&'static str, CurveRefused)> {
+        let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
+        Self::new(points.clone(), is_closed, points, twist_deg, scale)
+    }
+
     /// The curve through `points`, in world units, whose control points go to `moved` with a twist about the tangent in
     /// degrees and a scale each.
     ///
@@ -204,14 +213,7 @@ impl HandleCurve {
 
     /// A curve through these points, which move nowhere; this one if they make none.
     fn resting(&self, points: Vec<DVec3>) -> Self {
-        let count = points.len();
-        let resting = Self::new(
-            points.clone(),
-            self.rest().is_closed(),
-            points,
-            vec![0.0; count],
-            vec![1.0; count],
-        );
+        let resting = Self::at_rest_through(points, self.rest().is_closed());
         resting.map_or_else(|_| self.clone(), |curve| curve.with_settings_of(self).sharpened(0.0))
     }
 

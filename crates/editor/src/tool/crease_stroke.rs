@@ -2,7 +2,7 @@
 //! follows a curve along it.
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{Surface, SurfaceVertex, feature_line};
+use pliant_mesh::{SurfaceVertex, feature_line};
 
 use super::context::Context;
 use super::drawn_path::{DrawnPath, STEP_PX, evenly};
@@ -14,6 +14,7 @@ use crate::crease;
 use crate::document::{Crease, HandleCurve, HandleLine};
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
+use crate::region::displaced;
 use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
@@ -63,8 +64,7 @@ impl CreaseStroke {
     /// The curve along a line of vertices.
     fn curve(&self, line: &[DVec3], width: f64) -> Option<HandleCurve> {
         let points = evenly(line, self.path.point_count(), self.path.is_closed());
-        let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
-        let curve = HandleCurve::new(points.clone(), self.path.is_closed(), points, twist_deg, scale).ok()?;
+        let curve = HandleCurve::at_rest_through(points, self.path.is_closed()).ok()?;
         Some(curve.creased(Some(Crease::new(width, 0.0).ok()?)))
     }
 }
@@ -124,12 +124,7 @@ impl Gesture for CreaseStroke {
         let is_closed = self.path.is_closed();
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
-            let surface = Surface {
-                positions: (model.surface.positions.iter().zip(&**displacements))
-                    .map(|(&rest, &moved)| rest + moved)
-                    .collect(),
-                triangles: model.surface.triangles.clone(),
-            };
+            let surface = displaced(&model.surface, &displacements);
             Ok(feature_line(&surface, &model.topology, &stroke, is_closed, width).unwrap_or_default())
         });
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);

@@ -84,8 +84,7 @@ impl CurveStroke {
         };
         let places: Vec<DVec3> = samples.iter().map(|sample| sample.point).collect();
         let points = evenly(&places, count, is_closed);
-        let (twist_deg, scale) = (vec![0.0; points.len()], vec![1.0; points.len()]);
-        let curve = HandleCurve::new(points.clone(), is_closed, points, twist_deg, scale).ok()?;
+        let curve = HandleCurve::at_rest_through(points, is_closed).ok()?;
         let (vertices, reach) = match self.shape {
             StrokeShape::Spine => (around(curve.rest(), half, &samples, &picking), SPINE_REACH * half),
             _ => (

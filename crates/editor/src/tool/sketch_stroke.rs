@@ -1,7 +1,7 @@
 //! A stroke that draws a part of the model's outline anew: the outline that it means becomes a handle that follows it.
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{Surface, SurfaceVertex, bounding_box};
+use pliant_mesh::{SurfaceVertex, bounding_box};
 
 use super::context::Context;
 use super::drawn_path::DrawnPath;
@@ -13,6 +13,7 @@ use crate::document::{HandleLine, HandleSketch};
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
 use crate::outline;
+use crate::region::displaced;
 use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
@@ -118,11 +119,7 @@ impl Gesture for SketchStroke {
         let (meant, size_px) = (sketch.clone(), context.view.viewport_px());
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
-            let rest = model.surface.positions.iter().zip(&**displacements);
-            let surface = Surface {
-                positions: rest.map(|(&rest, &moved)| rest + moved).collect(),
-                triangles: model.surface.triangles.clone(),
-            };
+            let surface = displaced(&model.surface, &displacements);
             let matched = outline::matched(&meant, &surface, |vertex| is_open[vertex.index()]).unwrap_or_default();
             let begins_at = |end: Option<&(SurfaceVertex, DVec3)>, of_line: DVec2| {
                 let seen = end.and_then(|(vertex, _)| meant.seen(surface.positions[vertex.index()]));
