@@ -4,26 +4,13 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Bvh, Drawn, DrawnVertex, Model, shapes};
-use pliant_stitch::{Age, Attributes, Keep, NewShape, Part, Sight, StitchError, SurfaceCurve, VertexSource};
+use pliant_stitch::{Age, Keep, NewShape, Sight, StitchError, SurfaceCurve, VertexSource};
 
-use crate::made::{genus, noise};
+use crate::made::{genus, noise, with_coloured};
 
 /// Cuts a shape whose vertices have their coordinates as colours.
 fn cut(model: &Model, curve: &SurfaceCurve, keep: Keep) -> Result<NewShape, StitchError> {
-    let drawn = model.rest();
-    let value = |vertex: DrawnVertex, channel: usize| drawn.positions[vertex.index()][channel];
-    let part = Part {
-        model,
-        drawn: &drawn,
-        group: &|_| 0,
-        attributes: Attributes {
-            charted: 0,
-            blended: 3,
-            value: &value,
-        },
-        normals: None,
-    };
-    NewShape::cut_along_curve(&part, curve, keep, &[])
+    with_coloured(model, |part| NewShape::cut_along_curve(part, curve, keep, &[]))
 }
 
 fn drawn(shapes: &[&NewShape]) -> Drawn {

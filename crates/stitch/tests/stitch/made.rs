@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex, Model, shapes};
+use pliant_stitch::{Attributes, Part};
 
 /// The shape without the triangles whose middle `is_out`.
 pub fn without(shape: &Drawn, is_out: impl Fn(DVec3) -> bool) -> Drawn {
@@ -24,6 +25,23 @@ pub fn used(shape: &Drawn) -> Drawn {
     }
     let renumber = |corners: &[DrawnVertex; 3]| corners.map(|v| DrawnVertex(number[v.index()]));
     Drawn::once(positions, shape.triangles.iter().map(renumber).collect())
+}
+
+/// Does something with the part of a model whose vertices have their coordinates as colours.
+pub fn with_coloured<T>(model: &Model, work: impl FnOnce(&Part<'_>) -> T) -> T {
+    let drawn = model.rest();
+    let value = |vertex: DrawnVertex, channel: usize| drawn.positions[vertex.index()][channel];
+    work(&Part {
+        model,
+        drawn: &drawn,
+        group: &|_| 0,
+        attributes: Attributes {
+            charted: 0,
+            blended: 3,
+            value: &value,
+        },
+        normals: None,
+    })
 }
 
 /// The model of a shape.

@@ -1,27 +1,14 @@
 //! Cutting along planes.
 
 use glam::DVec3;
-use pliant_mesh::{Drawn, DrawnVertex, Model, shapes};
-use pliant_stitch::{Attributes, Keep, NewShape, Part, Plane, StitchError, VertexSource};
+use pliant_mesh::{Drawn, Model, shapes};
+use pliant_stitch::{Keep, NewShape, Plane, StitchError, VertexSource};
 
-use crate::made::{genus, noise};
+use crate::made::{genus, noise, with_coloured};
 
 /// Cuts a shape whose vertices have their coordinates as colours.
 fn cut(model: &Model, plane: &Plane, keep: Keep) -> Result<NewShape, StitchError> {
-    let drawn = model.rest();
-    let value = |vertex: DrawnVertex, channel: usize| drawn.positions[vertex.index()][channel];
-    let part = Part {
-        model,
-        drawn: &drawn,
-        group: &|_| 0,
-        attributes: Attributes {
-            charted: 0,
-            blended: 3,
-            value: &value,
-        },
-        normals: None,
-    };
-    NewShape::cut_along(&part, plane, keep, &[])
+    with_coloured(model, |part| NewShape::cut_along(part, plane, keep, &[]))
 }
 
 fn as_model(shape: &NewShape) -> Model {
