@@ -8,9 +8,9 @@ use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
 const HOVERS: [&str; 2] = [
-    "Sets the least bend at the selected point while *Chain* pulls another one: a knee that is never straight does not bend \
+    "Sets the least bend at the selected point while Chain pulls another one: a knee that is never straight does not bend \
      the wrong way.",
-    "Sets the most bend at the selected point while *Chain* pulls another one: 0° is straight.",
+    "Sets the most bend at the selected point while Chain pulls another one: 0° is straight.",
 ];
 
 /// Shows the least and the most bend at the selected points of the handle's curve, if there are such points.
