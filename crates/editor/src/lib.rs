@@ -88,8 +88,8 @@ pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, FootprintEntry, GroundAxis,
-    HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, Placement, PoseEntry, Project, Rest, SOFT_RANGE,
-    STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
+    HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, MixEntry, PathEntry, Placement, PoseEntry, Project,
+    Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;
 pub use input::{Button, Key, Modifiers, Pointer};
@@ -106,7 +106,7 @@ pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
-pub use timeline::{HandlePlace, KeySpace, SequenceTimeline, Timeline};
+pub use timeline::{BodyMotion, HandlePlace, KeySpace, SequenceTimeline, Timeline};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,
     StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,

@@ -77,7 +77,9 @@ pub use convert::Polygons;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError};
 pub use format::{Format, UnknownFormat};
-pub use gltf::{bytes_of_name, is_same_document, name_of_bytes, neighbours_named, with_neighbours_renamed};
+pub use gltf::{
+    MorphPlayback, bytes_of_name, is_same_document, name_of_bytes, neighbours_named, with_neighbours_renamed,
+};
 pub use images::pixels::Rgba8;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use point_cache::{PointCache, PointCacheFormat};

@@ -17,6 +17,8 @@ use super::json::parse;
 use super::keys::{KeyEntry, check_keys};
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
+use super::mix::MixEntry;
+use super::path::PathEntry;
 use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
@@ -70,6 +72,10 @@ pub struct EditFile {
     pub filter: Vec<FilterEntry>,
     /// Handles that are held where they rest on the ground, for sequences.
     pub footprints: Vec<FootprintEntry>,
+    /// The bent path of the whole body, for sequences ([`EditFile::body_motions`]).
+    pub path: Option<PathEntry>,
+    /// Another sequence that leads handles, for sequences.
+    pub mix: Option<MixEntry>,
     /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
@@ -145,6 +151,10 @@ struct StoredEdit {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     footprints: Vec<FootprintEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    path: Option<PathEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mix: Option<MixEntry>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
 }
 
@@ -200,6 +210,8 @@ impl Default for EditFile {
             keys: Vec::new(),
             filter: Vec::new(),
             footprints: Vec::new(),
+            path: None,
+            mix: None,
             weld: None,
         }
     }
@@ -271,6 +283,7 @@ impl EditFile {
         check_keys(&stored.keys)?;
         check_filters(&stored.filter)?;
         check_footprints(&stored.footprints)?;
+        stored.path.as_ref().map_or(Ok(()), PathEntry::check)?;
         if let Some(weld) = stored.weld {
             WELD.check(weld).map_err(|error| error.under("weld"))?;
         }
@@ -308,6 +321,8 @@ impl EditFile {
             keys: stored.keys,
             filter: stored.filter,
             footprints: stored.footprints,
+            path: stored.path,
+            mix: stored.mix,
             weld: stored.weld,
         })
     }
@@ -343,6 +358,8 @@ impl EditFile {
             keys: self.keys.clone(),
             filter: self.filter.clone(),
             footprints: self.footprints.clone(),
+            path: self.path.clone(),
+            mix: self.mix.clone(),
             weld: self.weld,
         };
         json!(stored)

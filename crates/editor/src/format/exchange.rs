@@ -140,6 +140,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         keys: document_keys::entries(document, &region.handles),
         filter: Vec::new(),
         footprints: Vec::new(),
+        path: None,
+        mix: None,
         weld: model.weld.distance,
     };
     let setup = edit.resolve(model)?;
@@ -209,7 +211,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.loose = setup.loose;
     let mut document = Document::from(document);
     document.take_part(edit.strength);
-    if !(edit.keys.is_empty() && edit.filter.is_empty() && edit.footprints.is_empty()) {
+    if !edit.keys.is_empty() || edit.member_of_sequences().is_some() {
         document_keys::take_keys(&mut document, edit, &setup)?;
     }
     if let Some(kept) = edit.kept.as_ref().and_then(|kept| kept.taken_by(&edit.method)) {

@@ -1,5 +1,6 @@
 //! Footprints of an edit: parts that rest on the ground for some frames.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
@@ -32,6 +33,16 @@ pub enum GroundAxis {
     Y,
     /// As in Blender.
     Z,
+}
+
+impl GroundAxis {
+    /// Its direction, of length 1.
+    pub(super) fn direction(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
+    }
 }
 
 fn usual_fade() -> u32 {

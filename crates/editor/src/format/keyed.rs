@@ -104,17 +104,13 @@ impl EditFile {
     /// # Errors
     /// Members that are for sequences, a name that no handle has, a name that two handles have.
     pub(super) fn timed_keys(&self) -> Result<Vec<TimedKey<'_>>, EditError> {
-        let others = [
-            ("filter", self.filter.is_empty()),
-            ("footprints", self.footprints.is_empty()),
-        ];
-        if let Some((member, _)) = others.into_iter().find(|(_, is_empty)| !is_empty) {
+        if let Some(member) = self.member_of_sequences() {
             return Err(EditError::Other {
                 place: "the edit".to_owned(),
                 sentence: format!("has `{member}`, and that is for sequences: use `pliant sequence`, or remove it"),
             });
         }
-        let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
+        let names = self.names();
         let timed: Result<Vec<TimedKey<'_>>, EditError> = self
             .keys
             .iter()

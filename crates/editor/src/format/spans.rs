@@ -18,7 +18,7 @@ use crate::warning::shortened;
 
 impl EditFile {
     /// The frames in a sequence of `count` frames in which the places of handles must be known, ascending: those of keys
-    /// and those of filters.
+    /// and of filters, and all for footprints, a path and a mix.
     ///
     /// # Errors
     /// Keys at times, or beyond the last frame; data that fit only one frame: lines, cages, examples, a kept shape;
@@ -91,14 +91,18 @@ impl EditFile {
             }
             frames.extend(first..=last);
         }
-        if !self.footprints.is_empty() {
+        if let Some(path) = &self.path {
+            path.check_frames(count)?;
+        }
+        if !self.footprints.is_empty() || self.path.is_some() || self.mix.is_some() {
             frames.extend(0..count);
         }
         Ok(frames.into_iter().collect())
     }
 
     /// The motions of its handles through a sequence, on the model of `setup`, where the handles are at `rest`. `place`
-    /// gives the place of a handle, by its number, in each of the [frames](EditFile::frames_with_places).
+    /// gives the place of a handle, by its number, in each of the [frames](EditFile::frames_with_places), and `led` the
+    /// places to which another sequence leads handles, in every frame.
     ///
     /// # Errors
     /// A name that no handle has, or that two handles have; two keys of a handle at one frame; spans of a handle that
@@ -108,8 +112,9 @@ impl EditFile {
         setup: &Setup,
         rest: &[HandlePlace],
         place: impl Fn(usize, usize) -> HandlePlace + Copy,
+        led: BTreeMap<usize, Vec<HandlePlace>>,
     ) -> Result<SequenceTimeline, EditError> {
-        let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
+        let names = self.names();
         let mut spans: Vec<Vec<Span>> = vec![Vec::new(); names.len()];
         for (number, key) in self.keys.iter().enumerate() {
             for (name, transform) in &key.handles {
@@ -131,7 +136,12 @@ impl EditFile {
         for span in spans.iter_mut().flatten() {
             span.keys.sort_by_key(|key| key.frame);
         }
-        Ok(SequenceTimeline::new(spans, self.shifts(&names, place)?))
+        Ok(SequenceTimeline {
+            spans,
+            shifts: self.shifts(&names, place)?,
+            led,
+            strength: self.strength,
+        })
     }
 
     /// The footprints, each with the number of its handle.
@@ -139,15 +149,13 @@ impl EditFile {
     /// # Errors
     /// A name that no handle has, or that two handles have; a handle that a key, a filter or another footprint moves too.
     pub fn footprints_of_handles(&self) -> Result<Vec<(usize, &FootprintEntry)>, EditError> {
-        let names: Vec<&str> = self.handles.iter().map(|handle| &*handle.name).collect();
+        let names = self.names();
         let mut found: Vec<(usize, &FootprintEntry)> = Vec::new();
         for (place, footprint) in self.footprints.iter().enumerate() {
             let name = &footprint.handle;
             let in_footprint = |error: EditError| error.under(&format!("footprints[{place}].handle"));
             let handle = handle_of(name, &names).map_err(in_footprint)?;
-            let is_keyed = self.keys.iter().any(|key| key.handles.contains_key(name));
-            let is_filtered = self.filter.iter().any(|filter| filter.handle == *name);
-            if is_keyed || is_filtered || found.iter().any(|(other, _)| *other == handle) {
+            if self.is_keyed_or_filtered(name) || found.iter().any(|(other, _)| *other == handle) {
                 return Err(EditError::Other {
                     place: format!("footprints[{place}]"),
                     sentence: format!(

@@ -55,8 +55,15 @@ impl HandlePlace {
     }
 
     /// The handle's middle, in world space.
-    pub(crate) fn centre(&self) -> DVec3 {
+    pub fn centre(&self) -> DVec3 {
         self.centre
+    }
+
+    /// A share of the rigid motion from here to another place of the handle.
+    fn way_to(&self, other: &Self, share: f64) -> DAffine3 {
+        let turn = DQuat::IDENTITY.slerp((other.rotation * self.rotation.inverse()).normalize(), share);
+        let centre = self.centre.lerp(other.centre, share);
+        DAffine3::from_rotation_translation(turn, centre - turn * self.centre)
     }
 
     /// A direction in the handle's axes, in world space.
@@ -94,38 +101,40 @@ pub(crate) struct Span {
 #[derive(Clone, PartialEq, Debug)]
 pub struct SequenceTimeline {
     /// The spans of each handle.
-    spans: Vec<Vec<Span>>,
+    pub(crate) spans: Vec<Vec<Span>>,
     /// The shifts of each handle by filters, by frame; they are added to the transforms of keys.
-    shifts: Vec<BTreeMap<usize, DVec3>>,
+    pub(crate) shifts: Vec<BTreeMap<usize, DVec3>>,
+    /// The places to which another sequence leads handles, in every frame, by their numbers. Nothing else moves them.
+    pub(crate) led: BTreeMap<usize, Vec<HandlePlace>>,
+    /// The share of their way there, from 0 to 1.
+    pub(crate) strength: f64,
 }
 
 impl SequenceTimeline {
-    /// One entry for each handle in both.
-    pub(crate) fn new(spans: Vec<Vec<Span>>, shifts: Vec<BTreeMap<usize, DVec3>>) -> Self {
-        Self { spans, shifts }
-    }
-
     /// The handles' maps at a frame where they have these places; `None` if no handle is moved.
     pub fn maps_at(&self, frame: usize, places: &[HandlePlace]) -> Option<Vec<DAffine3>> {
-        let of_handle = |((spans, shifts), place): ((&Vec<Span>, &BTreeMap<usize, DVec3>), &HandlePlace)| {
+        let of_handle = |(number, place): (usize, &HandlePlace)| {
+            if let Some(led) = self.led.get(&number) {
+                return (self.strength > 0.0).then(|| place.way_to(&led[frame], self.strength));
+            }
+            let (spans, shifts) = (&self.spans[number], &self.shifts[number]);
             let map = spans.iter().find_map(|span| span.at(frame, place));
             match shifts.get(&frame).filter(|shift| **shift != DVec3::ZERO) {
                 Some(shift) => Some(DAffine3::from_translation(*shift) * map.unwrap_or(DAffine3::IDENTITY)),
                 None => map,
             }
         };
-        let handles = self.spans.iter().zip(&self.shifts).zip(places);
-        let maps: Vec<Option<DAffine3>> = handles.map(of_handle).collect();
+        let maps: Vec<Option<DAffine3>> = places.iter().enumerate().map(of_handle).collect();
         if maps.iter().all(Option::is_none) {
             return None;
         }
         Some(maps.into_iter().map(|map| map.unwrap_or(DAffine3::IDENTITY)).collect())
     }
 
-    /// Returns true if a frame is in the span of a key or of a filter.
+    /// Returns true if another sequence leads a handle, or a frame is in the span of a key or of a filter.
     pub fn reaches(&self, frame: usize) -> bool {
         let is_shifted = self.shifts.iter().any(|shifts| shifts.contains_key(&frame));
-        is_shifted || self.spans.iter().flatten().any(|span| span.holds(frame))
+        !self.led.is_empty() || is_shifted || self.spans.iter().flatten().any(|span| span.holds(frame))
     }
 }
 
@@ -263,7 +272,12 @@ mod tests {
 
     fn span(ease: Ease, space: KeySpace) -> SequenceTimeline {
         let keys = vec![key(4, ease, space, 1.2), key(7, ease, space, -0.4)];
-        SequenceTimeline::new(vec![vec![Span { ends: [2, 12], keys }]], vec![BTreeMap::new()])
+        SequenceTimeline {
+            spans: vec![vec![Span { ends: [2, 12], keys }]],
+            shifts: vec![BTreeMap::new()],
+            led: BTreeMap::new(),
+            strength: 1.0,
+        }
     }
 
     #[test]

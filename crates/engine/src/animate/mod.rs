@@ -5,27 +5,27 @@
 
 mod kind;
 mod report;
+mod writer;
 
 use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::Bound;
 use pliant_editor::{Dye, EditFile, Setup, Start, Timeline, sum_of_shapes};
-use pliant_io::{FewTargets, MorphAnimation, PointCache, PointCacheFormat, ShapeDirections};
-use pliant_mesh::{DrawnVertex, Model, Progress, SurfaceVertex};
+use pliant_mesh::{Progress, SurfaceVertex};
 
 use self::kind::Kind;
 pub use self::kind::animation_path;
 pub use self::report::{AnimationReport, MorphReport};
+pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices, places};
 use crate::EngineError;
 use crate::apply::{Prepared, check_bends, prepare};
 use crate::edit_job::{EditJob, with_keys};
-use crate::files::{Destination, NewFile, Staged, Staging};
+use crate::files::{NewFile, Staged, Staging};
 use crate::flow::with_dye;
 use crate::frames::Frames;
 use crate::loading::Loaded;
 use crate::report::{FrameTimes, ms_since};
-use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
 /// The most frames of an animation: more than an hour at 24 frames a second.
@@ -150,8 +150,7 @@ pub fn stage_animation(
     let count = frame_count(timeline.duration(), animation.fps)?;
     let frames = Frames::of(job.output, count - 1);
     loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
-    for place in frames.all() {
-        Destination::of(&place)?;
+    for place in places(job.output, count)? {
         // Only a glTF comes back whole with the animation, so only that may replace FILE.
         let edited = matches!(kind, Kind::Morphs).then_some(job.file);
         job.refuse_outputs(&place, edited, watch)?;
@@ -166,14 +165,24 @@ pub fn stage_animation(
     let colours = dye
         .map(|dye| with_dye(loaded, dye, job.output, is_morph))
         .unwrap_or_default();
-    let mut run = Run {
+    let files = AnimationFiles {
+        loaded,
+        output: job.output,
+        name: animation.name,
+        tolerance: animation.tolerance,
+        fps: animation.fps,
+        count,
+        moved: MovedVertices::Surface,
+        inside_out: &setup.inside_out,
         colours: colours.colours.as_deref(),
+        beside: report_to.as_ref(),
+    };
+    let mut run = Run {
         animation,
         loaded,
         setup: &setup,
         timeline: &timeline,
         watch,
-        count,
         solve_ms: Vec::with_capacity(count),
         report: AnimationReport {
             bind_ms: ms_since(start),
@@ -182,12 +191,7 @@ pub fn stage_animation(
     };
     run.report.warnings.extend(colours.lost);
     run.report.warnings.extend(frames.left_after());
-    let beside = report_to.as_ref();
-    let staged = match kind {
-        Kind::Cache(format) => run.cache(moving, format, staging)?,
-        Kind::Morphs => run.morphs(moving, beside, staging)?,
-        Kind::Files => run.files(moving, &frames, beside, staging)?,
-    };
+    let staged = run.write(AnimationWriter::new(files, watch, staging)?, moving, count)?;
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
     }
@@ -219,164 +223,44 @@ fn is_at_rest(edit: &EditFile, timeline: &Timeline) -> bool {
     }
 }
 
-/// An animation that is being written.
+/// An animation that is being solved.
 struct Run<'a> {
     animation: &'a Animate<'a>,
-    /// Other colours of the drawn vertices, if there are some.
-    colours: Option<&'a [[u16; 4]]>,
     loaded: &'a Loaded,
     setup: &'a Setup,
     timeline: &'a Timeline,
     watch: &'a Watch,
-    /// The number of frames.
-    count: usize,
     /// The time of each frame's solve.
     solve_ms: Vec<f64>,
     report: AnimationReport,
 }
 
 impl Run<'_> {
-    fn model(&self) -> &Model {
-        &self.loaded.model
-    }
-
-    /// Writes a file for each frame.
-    fn files(
+    /// Solves all frames and writes them.
+    fn write(
         &mut self,
+        mut writer: AnimationWriter<'_>,
         mut moving: Option<Prepared>,
-        frames: &Frames,
-        beside: Option<&Destination>,
-        staging: &Staging,
+        count: usize,
     ) -> Result<Staged, EngineError> {
-        let mut staged: Option<Staged> = None;
         let progress = self.watch.begin("animating");
-        let mut positions = Vec::new();
-        for (frame, place) in frames.all().enumerate() {
-            let shown = self.frame(moving.as_mut(), frame)?;
-            self.model().drawn_positions(&shown, &mut positions);
-            let save = SaveAs {
-                inside_out: &self.setup.inside_out,
-                colours: self.colours,
-                beside: beside.map(|report| ("--report", report)),
-                ..SaveAs::shape(&positions, &place)
-            };
-            let saved = self.saved(&save, staging)?;
-            staged = Some(match staged {
-                Some(staged) => staged.and(saved),
-                None => saved,
-            });
-            progress.set((frame + 1) as f32 / self.count as f32);
+        for frame in 0..count {
+            writer.push(&self.frame(moving.as_mut(), frame)?)?;
+            progress.set((frame + 1) as f32 / count as f32);
         }
-        self.warn_of(moving.as_ref());
-        staged.ok_or(EngineError::Interrupted)
-    }
-
-    /// Writes a glTF with an animation of morph targets.
-    fn morphs(
-        &mut self,
-        mut moving: Option<Prepared>,
-        beside: Option<&Destination>,
-        staging: &Staging,
-    ) -> Result<Staged, EngineError> {
-        let diagonal = self.model().bounds().map_or(0.0, |bounds| bounds.diagonal());
-        let bound = self.animation.tolerance * diagonal;
-        let mut directions = ShapeDirections::within(bound);
-        let progress = self.watch.begin("animating");
-        for frame in 0..self.count {
-            directions.push(&self.frame(moving.as_mut(), frame)?);
-            progress.set((frame + 1) as f32 / self.count as f32);
+        if let Some(Prepared { bound, .. }) = &moving {
+            self.report.warnings.extend(self.setup.worded(bound.warnings()));
         }
-        self.warn_of(moving.as_ref());
         drop(moving);
-        self.watch.begin("finding morph targets");
-        let FewTargets {
-            targets,
-            weights,
-            error,
-        } = directions.targets();
-        let targets: Vec<Vec<DVec3>> = targets.iter().map(|target| self.of_drawn(target)).collect();
-        let times: Vec<f64> = (0..self.count).map(|frame| frame as f64 / self.animation.fps).collect();
-        let animation = MorphAnimation {
-            name: self.animation.name,
-            times: &times,
-            weights: &weights,
-            targets: &targets,
-        };
-        self.report.morph = Some(MorphReport {
-            targets: animation.target_names().len(),
-            bound,
-            largest_error: error,
-            diagonal,
-        });
-        let rest = self.model().rest_positions();
-        let save = SaveAs {
-            inside_out: &self.setup.inside_out,
-            colours: self.colours,
-            animation: Some(&animation),
-            beside: beside.map(|report| ("--report", report)),
-            ..SaveAs::shape(&rest, self.animation.job.output)
-        };
-        let progress = self.watch.begin("saving");
-        let staged = self.saved(&save, staging);
-        progress.set(1.0);
-        staged
-    }
-
-    /// The displacements of the drawn vertices.
-    fn of_drawn(&self, of_surface: &[DVec3]) -> Vec<DVec3> {
-        let mut out = Vec::new();
-        let way = |vertex: SurfaceVertex| of_surface[vertex.index()];
-        self.model()
-            .spread(way, |_, vertex| vertex.map_or(DVec3::ZERO, way), &mut out);
-        out
-    }
-
-    /// Stages one save, and keeps its warnings and its time.
-    fn saved(&mut self, save: &SaveAs<'_>, staging: &Staging) -> Result<Staged, EngineError> {
-        let start = Instant::now();
-        let saved = saving::stage(self.loaded, save, staging, &Progress::new(), &self.watch.cancel)?;
-        self.report.save_ms += ms_since(start);
-        for warning in saved.warnings {
+        let (staged, written) = writer.finish()?;
+        self.report.save_ms = written.save_ms;
+        self.report.morph = written.morph;
+        for warning in written.warnings {
             if !self.report.warnings.contains(&warning) {
                 self.report.warnings.push(warning);
             }
         }
-        Ok(saved.staged)
-    }
-
-    /// Writes a point cache of the file's vertices.
-    fn cache(
-        &mut self,
-        mut moving: Option<Prepared>,
-        format: PointCacheFormat,
-        staging: &Staging,
-    ) -> Result<Staged, EngineError> {
-        let drawn = &self.model().drawn;
-        // A vertex of the file that is seen through several nodes is at the first of its places.
-        let mut shown_at = vec![None; drawn.file_vertex_count()];
-        for (vertex, file_vertex) in (0..).zip(drawn.file_vertices()) {
-            shown_at[file_vertex.index()].get_or_insert(DrawnVertex(vertex));
-        }
-        let points = u32::try_from(shown_at.len()).unwrap_or(u32::MAX);
-        let mut cache = PointCache::new(format, self.count as u32, points, self.animation.fps);
-        let progress = self.watch.begin("animating");
-        let mut positions = Vec::new();
-        for frame in 0..self.count {
-            let shown = self.frame(moving.as_mut(), frame)?;
-            self.model().drawn_positions(&shown, &mut positions);
-            let place = |shown: &Option<DrawnVertex>| shown.map_or(DVec3::ZERO, |vertex| positions[vertex.index()]);
-            cache.push(shown_at.iter().map(place));
-            progress.set((frame + 1) as f32 / self.count as f32);
-        }
-        self.warn_of(moving.as_ref());
-        let start = Instant::now();
-        let file = NewFile {
-            to: Destination::of(self.animation.job.output)?,
-            bytes: &cache.into_bytes(),
-        };
-        let staged = staging.stage_watched(&[file], None, &Progress::new(), &self.watch.cancel);
-        self.report.save_ms += ms_since(start);
-        staged
+        Ok(staged)
     }
 
     /// The displacement of each surface vertex in a frame.
@@ -385,7 +269,7 @@ impl Run<'_> {
             return Err(EngineError::Interrupted);
         }
         let Some(Prepared { bound, .. }) = moving else {
-            return Ok(vec![DVec3::ZERO; self.model().surface.positions.len()]);
+            return Ok(vec![DVec3::ZERO; self.loaded.model.surface.positions.len()]);
         };
         let start = Instant::now();
         let solved = self.solved(bound, frame as f64 / self.animation.fps);
@@ -413,13 +297,6 @@ impl Run<'_> {
         self.report.unsettled_frames += usize::from(!bent.step.converged);
         let rest = self.setup.rest.as_ref().map(|rest| &rest.displacements);
         Ok(sum_of_shapes(rest, &bent.shown).to_vec())
-    }
-
-    /// Notes the warnings of the binding.
-    fn warn_of(&mut self, moving: Option<&Prepared>) {
-        if let Some(Prepared { bound, .. }) = moving {
-            self.report.warnings.extend(self.setup.worded(bound.warnings()));
-        }
     }
 
     /// The report, at the end.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Budget, Ordering, Role, Target};
-use pliant_editor::{HandlePlace, Rest, SequenceTimeline, Setup, settle};
+use pliant_editor::{BodyMotion, HandlePlace, Rest, SequenceTimeline, Setup, settle};
 use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
 
 use super::footprints::Footprints;
@@ -26,6 +26,8 @@ pub(super) struct Bending<'a> {
     pub footprints: &'a [Footprints],
     /// The vertices of each handle.
     pub handles: &'a [Vec<SurfaceVertex>],
+    /// The motions of the whole body in all frames; none if its path is not bent.
+    pub body: &'a [BodyMotion],
 }
 
 /// The result of a frame.
@@ -103,6 +105,22 @@ impl Bending<'_> {
         positions: &[DVec3],
         watch: &Watch,
     ) -> Result<Option<Bent>, EngineError> {
+        let Some(motion) = self.body.get(frame).filter(|motion| motion.moves()) else {
+            return self.bent(frame, file, positions, watch);
+        };
+        let bent = self.bent(frame, file, positions, watch)?;
+        let mut bent = bent.unwrap_or_else(|| Bent {
+            displacements: vec![DVec3::ZERO; positions.len()],
+            is_settled: true,
+            warnings: Vec::new(),
+        });
+        let ways = bent.displacements.iter_mut().zip(positions);
+        ways.for_each(|(way, position)| *way = motion.moved(*position + *way) - *position);
+        Ok(Some(bent))
+    }
+
+    /// Bends a frame whose surface is at `positions` by its handles; `None` if none of them moves.
+    fn bent(&self, frame: usize, file: &Path, positions: &[DVec3], watch: &Watch) -> Result<Option<Bent>, EngineError> {
         let Some(targets) = self.targets(frame, positions) else {
             return Ok(None);
         };

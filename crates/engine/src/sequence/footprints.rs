@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use pliant_editor::{FootprintEntry, GroundAxis};
+use pliant_editor::{BodyMotion, FootprintEntry, GroundAxis};
 
 /// The places of a handle's vertices in the frames of its footprints and around them, and the number of footprints.
 pub(super) struct Footprints {
@@ -13,14 +13,25 @@ pub(super) struct Footprints {
 }
 
 impl Footprints {
-    /// Finds the footprints of a handle. `shapes` has the positions of its vertices in every frame.
-    pub fn of(handle: usize, entry: &FootprintEntry, shapes: &[Vec<DVec3>]) -> Self {
+    /// Finds the footprints of a handle. `shapes` has the positions of its vertices in every frame. If the `body` has
+    /// motions, these carry every frame afterwards, and the handle rests then.
+    pub fn of(handle: usize, entry: &FootprintEntry, shapes: &[Vec<DVec3>], body: &[BodyMotion]) -> Self {
         let runs = runs(entry, shapes);
+        // A shape in one frame that the body's motion brings to the place of another frame's shape.
+        let brought = |from: usize, to: usize| -> Vec<DVec3> {
+            match (body.get(from), body.get(to)) {
+                (Some(first), Some(second)) if from != to && (first.moves() || second.moves()) => {
+                    let places = shapes[from].iter();
+                    places.map(|place| second.before(first.moved(*place))).collect()
+                }
+                _ => shapes[from].clone(),
+            }
+        };
         let mut places = BTreeMap::new();
         for (number, &(first, last)) in runs.iter().enumerate() {
-            let held = &shapes[usize::midpoint(first, last)];
+            let middle = usize::midpoint(first, last);
             for frame in first..=last {
-                places.insert(frame, held.clone());
+                places.insert(frame, brought(middle, frame));
             }
             // Half of the frames up to the next footprint at most.
             let before = match number.checked_sub(1) {
@@ -38,7 +49,8 @@ impl Footprints {
                     let frame = edge.saturating_add_signed(direction * step as isize);
                     let part = 1.0 - step as f64 / (length + 1) as f64;
                     let share = part * part * (3.0 - 2.0 * part);
-                    let pairs = shapes[frame].iter().zip(held.iter().zip(&shapes[edge]));
+                    let (held, at_edge) = (brought(middle, frame), brought(edge, frame));
+                    let pairs = shapes[frame].iter().zip(held.iter().zip(&at_edge));
                     let faded = pairs.map(|(own, (held, at_edge))| *own + (*held - *at_edge) * share);
                     places.insert(frame, faded.collect());
                 }
@@ -101,7 +113,7 @@ mod tests {
             speed: 0.02,
             fade: 9,
         };
-        let found = Footprints::of(0, &entry, &shapes);
+        let found = Footprints::of(0, &entry, &shapes, &[]);
         assert_eq!(found.count, 2);
         for (run, middle) in [(0..=3, 1), (10..=13, 11)] {
             assert!(
@@ -114,6 +126,6 @@ mod tests {
         assert!(off(4) > off(5) && off(5) > off(6) && off(6) > 0.0);
         assert!(off(9) > off(8) && off(8) > off(7) && off(7) > 0.0);
         let never = FootprintEntry { speed: 1e-9, ..entry };
-        assert!(Footprints::of(0, &never, &shapes).places.is_empty());
+        assert!(Footprints::of(0, &never, &shapes, &[]).places.is_empty());
     }
 }

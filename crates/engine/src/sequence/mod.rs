@@ -10,8 +10,10 @@ mod folder;
 mod followed;
 mod footprints;
 mod frame;
+mod leading;
 mod report;
 mod run;
+mod source;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -21,9 +23,11 @@ use pliant_io::PointCacheFormat;
 use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
 use self::folder::Folder;
-use self::followed::Followed;
+use self::followed::{Followed, Handles};
+use self::leading::leading_sequence;
 pub use self::report::SequenceReport;
-use self::run::{Run, Source, To};
+use self::run::{Run, To};
+use self::source::{Source, cache_format};
 use crate::EngineError;
 use crate::apply::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
@@ -63,12 +67,23 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     check_bends(&first.path, &first.model, &setup.method)?;
     let handles = vertices_of_handles(&setup);
     let footprints = edit.footprints_of_handles().map_err(in_edit)?;
-    let followed = Followed::of(&needed, (&first, &rest, &source), (&handles, &footprints), watch)?;
-    let timeline = followed.timeline(edit, &setup).map_err(in_edit)?;
-    let footprints = followed.footprints(&footprints);
-    let ordering = match needed.is_empty() {
-        true => None,
-        false => {
+    let led = edit.led_handles().map_err(in_edit)?;
+    let other = leading_sequence(job, edit, (&first, source.count()))?;
+    let ways = Handles {
+        vertices: &handles,
+        footprints: &footprints,
+        path: edit.handle_of_path().map_err(in_edit)?,
+        led: &led,
+    };
+    let sources = (&source, other.as_ref());
+    let followed = Followed::of(&needed, (&first, &rest), sources, (edit, &ways), watch)?;
+    let timeline = followed.timeline(edit, &setup, &led).map_err(in_edit)?;
+    let (footprints, body) = followed.footprints(&footprints);
+    // A path alone bends nothing.
+    let may_bend = !footprints.is_empty() || (0..source.count()).any(|frame| timeline.reaches(frame));
+    let ordering = match may_bend {
+        false => None,
+        true => {
             let progress = watch.begin("ordering");
             order(&first.model, &setup, job.budget, &progress, &watch.cancel)?
         }
@@ -81,6 +96,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
         ordering: ordering.as_ref(),
         budget: job.budget,
         handles: &handles,
+        body: &body,
     };
     let mut report = SequenceReport {
         method: setup.method.name().to_owned(),
@@ -121,8 +137,7 @@ enum Kind {
 impl Kind {
     fn of(sequence: &Sequence<'_>) -> Result<Self, EngineError> {
         let job = &sequence.job;
-        let format = |path: &Path| PointCacheFormat::of_name(&path.to_string_lossy()).filter(|_| !path.is_dir());
-        let Some(own) = format(job.file) else {
+        let Some(own) = cache_format(job.file) else {
             if sequence.mesh.is_some() {
                 return Err(EngineError::Arguments(
                     "--mesh is for a point cache (.pc2 or .mdd), and frames in a folder need none: leave it out"
@@ -136,7 +151,7 @@ impl Kind {
                 output: OutputFolder::of(job.output, ("FOLDER", job.file))?,
             });
         };
-        if format(job.output) != Some(own) {
+        if cache_format(job.output) != Some(own) {
             return Err(EngineError::Arguments(format!(
                 "--output {} must be a point cache of the same kind as {}: give it the same extension",
                 shown(job.output),

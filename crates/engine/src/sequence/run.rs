@@ -11,6 +11,7 @@ use super::bend::{Bending, Bent};
 use super::cache::Cache;
 use super::frame::Frame;
 use super::report::SequenceReport;
+use super::source::Source;
 use crate::EngineError;
 use crate::file_error::FileError;
 use crate::files::{Destination, NewFile, OutputFolder, Share, Staged, Staging};
@@ -18,24 +19,6 @@ use crate::loading::Loaded;
 use crate::report::ms_since;
 use crate::saving::{self, Original, SaveAs};
 use crate::watch::Watch;
-
-/// The frames of a sequence.
-pub(super) enum Source {
-    /// A file for each.
-    Folder(Vec<PathBuf>),
-    /// A point cache.
-    Cache(Cache),
-}
-
-impl Source {
-    /// The number of frames.
-    pub fn count(&self) -> usize {
-        match self {
-            Self::Folder(frames) => frames.len(),
-            Self::Cache(cache) => cache.count(),
-        }
-    }
-}
 
 /// A sequence that is being written.
 pub(super) struct Run<'a> {

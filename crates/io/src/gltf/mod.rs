@@ -22,6 +22,8 @@ pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed
 
 use document::fault::Fault;
 use document::{Document, container, uri};
+pub use geometry::playback::MorphPlayback;
+use geometry::playback::playback;
 use geometry::primitive::{self, Primitive};
 use geometry::{Linear, Pieces, Pose, draco, meshopt, targets, tree};
 
@@ -117,6 +119,12 @@ impl Stored {
     /// The names of its morph targets.
     pub fn morph_targets(&self) -> Vec<String> {
         targets::names(&self.document, &self.meshes)
+    }
+
+    /// The shapes during its first animation of morph targets; `None` if it has none.
+    pub fn morph_playback(&self, file: &str, cancel: &Cancel) -> Result<Option<MorphPlayback>, ReadError> {
+        let found = playback(&self.document, &self.meshes, &self.pieces, cancel);
+        found.map_err(|fault| fault.of_file(file, self.format))
     }
 
     /// The displacement of each drawn vertex by the morph targets of this name; `None` if there is none.

@@ -7,7 +7,7 @@ use pliant_mesh::{Cancel, Object};
 
 use crate::convert::Polygons;
 use crate::summary::Summary;
-use crate::{Appearance, Format, ReadError, gltf, obj, off, ply, stl, threemf, usdz};
+use crate::{Appearance, Format, MorphPlayback, ReadError, gltf, obj, off, ply, stl, threemf, usdz};
 
 /// A complete file as stored.
 #[derive(Debug)]
@@ -95,6 +95,18 @@ impl Scene {
     ) -> Result<Option<Vec<DVec3>>, ReadError> {
         match &self.stored {
             Stored::Gltf(stored) => stored.morph_target(file, target, vertex_count, cancel),
+            _ => Ok(None),
+        }
+    }
+
+    /// The shapes of the file's drawn vertices during its first animation of morph targets, which only a glTF can have.
+    /// `file` is used in messages only.
+    ///
+    /// # Errors
+    /// An animation or a target that can't be read, or soon after `cancel` is raised.
+    pub fn morph_playback(&self, file: &str, cancel: &Cancel) -> Result<Option<MorphPlayback>, ReadError> {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.morph_playback(file, cancel),
             _ => Ok(None),
         }
     }

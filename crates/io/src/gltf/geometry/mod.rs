@@ -12,12 +12,14 @@
 pub(crate) mod draco;
 pub(crate) mod instancing;
 pub(crate) mod meshopt;
+pub(crate) mod playback;
 mod pose;
 pub(crate) mod primitive;
 mod rounding;
 mod skins;
 pub(crate) mod targets;
 pub(crate) mod tree;
+mod weights;
 
 use std::collections::HashMap;
 use std::ops::Range;
