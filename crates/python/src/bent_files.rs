@@ -1,5 +1,6 @@
 //! Files bent by an edit, like `pliant apply`, `pliant animate` and `pliant sequence`.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use pliant_deform::{Budget, Method};
@@ -106,14 +107,8 @@ pub fn animate<'py>(
     memory: Option<&Bound<'py, PyAny>>,
     weld: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    for (name, value, range) in [("tolerance", tolerance, 1e-7..=0.1), ("fps", fps, 0.001..=1000.0)] {
-        if !range.contains(&value) {
-            let (least, most) = range.into_inner();
-            return Err(refused(format!(
-                "{name} is {value}: give a number from {least} to {most}"
-            )));
-        }
-    }
+    check_range("tolerance", tolerance, 1e-7..=0.1)?;
+    check_range("fps", fps, FRAME_RATES)?;
     let bending = Bending::of(edit, method, memory, weld)?;
     let name = bending.edit.own_name();
     bending.run(py, |watch, edit| {
@@ -140,7 +135,9 @@ pub fn animate<'py>(
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/sequence.txt"))]
 #[pyfunction]
-#[pyo3(signature = (frames, *, edit, output, mesh=None, report=None, method=None, memory=None, weld=None))]
+#[pyo3(signature = (
+    frames, *, edit, output, mesh=None, report=None, fps=24.0, replace=false, method=None, memory=None, weld=None
+))]
 #[expect(clippy::too_many_arguments, reason = "they are the command's arguments, by name")]
 pub fn sequence<'py>(
     py: Python<'py>,
@@ -149,15 +146,22 @@ pub fn sequence<'py>(
     output: PathBuf,
     mesh: Option<PathBuf>,
     report: Option<PathBuf>,
+    fps: f64,
+    replace: bool,
     method: Option<&Bound<'py, PyAny>>,
     memory: Option<&Bound<'py, PyAny>>,
     weld: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    check_range("fps", fps, FRAME_RATES)?;
     let bending = Bending::of(edit, method, memory, weld)?;
+    let name = bending.edit.own_name();
     bending.run(py, |watch, edit| {
         bending.refuse_shared(&output, report.as_deref(), None)?;
         let job = Sequence {
             mesh: mesh.as_deref(),
+            fps,
+            name: &name,
+            frames: ExistingFrames::replaced(replace),
             job: EditJob {
                 file: &frames,
                 edit,
@@ -171,6 +175,19 @@ pub fn sequence<'py>(
         let told = pliant_engine::sequence(&job, watch, &Staging::default())?;
         Ok((told.to_json(), told.warnings))
     })
+}
+
+/// The frames a second that an animation may have.
+const FRAME_RATES: RangeInclusive<f64> = 0.001..=1000.0;
+
+fn check_range(name: &str, value: f64, range: RangeInclusive<f64>) -> PyResult<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (least, most) = range.into_inner();
+    Err(refused(format!(
+        "{name} is {value}: give a number from {least} to {most}"
+    )))
 }
 
 /// The arguments that all commands share which bend.

@@ -39,7 +39,8 @@ pub(crate) struct AnimateArguments {
 #[derive(Args, Debug)]
 pub(crate) struct SequenceArguments {
     /// The folder of the frames: files of one format with the same vertices and faces, in the order of their names, in
-    /// which numbers count by their value; or a point cache (pc2, mdd)
+    /// which numbers count by their value; a point cache (pc2, mdd); or a glb or gltf with an animation of morph
+    /// targets
     #[arg(value_name = "FOLDER_OR_FILE")]
     pub frames: PathBuf,
     /// The mesh whose vertices a point cache moves
@@ -49,12 +50,18 @@ pub(crate) struct SequenceArguments {
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
     /// The folder to write, in which frames keep their names; it is made if it is missing. For a point cache the cache to
-    /// write, of the same kind
+    /// write, of the same kind. For a glb or gltf an animation as of `pliant animate`
     #[arg(long, value_name = "OUT")]
     pub output: PathBuf,
     /// The file for the numbers of frames and the warnings
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
+    /// The frames a second in which a glTF's animation is edited
+    #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
+    pub fps: f64,
+    /// Allow numbered files of a glTF's animation to replace existing ones
+    #[arg(long)]
+    pub replace: bool,
     /// The bending.
     #[command(flatten)]
     pub bending: BendingArguments,

@@ -1,7 +1,8 @@
 //! `pliant sequence`: an edit of a sequence of shapes.
 
-use pliant_engine::{EditJob, EngineError, Sequence, files, sequence};
+use pliant_engine::{EditJob, EngineError, ExistingFrames, Sequence, files, sequence};
 
+use super::apply::own_name;
 use super::motion_arguments::SequenceArguments;
 use crate::cli::console::{Console, warn};
 use crate::cli::threads::on_threads;
@@ -13,6 +14,8 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
         edit: edit_path,
         output,
         report,
+        fps,
+        replace,
         bending,
     } = arguments;
     if let Some(report) = report {
@@ -21,6 +24,9 @@ pub(super) fn run(arguments: &SequenceArguments, console: &mut Console<'_>) -> R
     let edit = bending.edit(edit_path, &console.watch)?;
     let job = Sequence {
         mesh: mesh.as_deref(),
+        fps: *fps,
+        name: &own_name(edit_path),
+        frames: ExistingFrames::replaced(*replace),
         job: EditJob {
             file: frames,
             edit: &edit,

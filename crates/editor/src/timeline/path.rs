@@ -165,7 +165,7 @@ fn headings(own: &[(DVec3, DVec3)], bent: &[(DVec3, DVec3)], up: DVec3) -> Vec<f
 mod tests {
     use super::*;
 
-    /// Eight steps a second straight ahead, swaying and bobbing.
+    /// Straight ahead, swaying and bobbing, with ten frames a step.
     fn walk() -> Vec<DVec3> {
         let at = |frame: f64| {
             DVec3::new(

@@ -33,6 +33,14 @@ impl Kind {
     }
 }
 
+/// Checks that an output's name is one of an animation.
+///
+/// # Errors
+/// The name is not.
+pub(crate) fn check_output(output: &Path) -> Result<(), EngineError> {
+    Kind::of(output).map(|_| ())
+}
+
 /// True for formats whose files can have an animation.
 fn has_time(format: Format) -> bool {
     matches!(format, Format::Glb | Format::Gltf)

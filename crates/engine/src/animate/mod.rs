@@ -16,6 +16,7 @@ use pliant_mesh::{Progress, SurfaceVertex};
 
 use self::kind::Kind;
 pub use self::kind::animation_path;
+pub(crate) use self::kind::check_output;
 pub use self::report::{AnimationReport, MorphReport};
 pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices, places};
 use crate::EngineError;
@@ -71,7 +72,10 @@ impl ExistingFrames {
     }
 
     /// Refuses names that are taken.
-    fn check(self, frames: &Frames) -> Result<(), EngineError> {
+    ///
+    /// # Errors
+    /// [`EngineError::FramesExist`].
+    pub(crate) fn check(self, frames: &Frames) -> Result<(), EngineError> {
         let Frames::Each { .. } = frames else { return Ok(()) };
         if self == Self::Replace {
             return Ok(());
@@ -202,11 +206,14 @@ pub fn stage_animation(
 }
 
 /// The number of frames up to a time, both ends included.
-fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
+///
+/// # Errors
+/// More frames than [`MOST_FRAMES`].
+pub(crate) fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
     let last = (duration * fps + ROUNDING).floor();
     if last >= MOST_FRAMES {
         return Err(EngineError::Arguments(format!(
-            "--fps {fps} gives {last} frames, more than {MOST_FRAMES}: lower it, or the times of the keys"
+            "--fps {fps} gives {last} frames, more than {MOST_FRAMES}: lower it, or shorten the animation"
         )));
     }
     Ok(last as usize + 1)

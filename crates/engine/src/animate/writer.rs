@@ -181,6 +181,22 @@ impl<'a> AnimationWriter<'a> {
         Ok((staged?, self.written))
     }
 
+    /// The same where no frame differs from the file's own animation: a glTF then stays as it is.
+    ///
+    /// # Errors
+    /// A file that can't be written.
+    pub fn finish_unchanged(mut self) -> Result<(Staged, Written), EngineError> {
+        if !matches!(self.sink, Sink::Morphs(_)) {
+            return self.finish();
+        }
+        let rest = std::mem::take(&mut self.rest);
+        let staged = self.saved(&SaveAs {
+            beside: self.files.beside.map(|report| ("--report", report)),
+            ..SaveAs::shape(&rest, self.files.output)
+        })?;
+        Ok((staged, self.written))
+    }
+
     fn cache(&mut self, cache: PointCache) -> Result<Staged, EngineError> {
         let start = Instant::now();
         let file = NewFile {

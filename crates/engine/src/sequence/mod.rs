@@ -11,27 +11,33 @@ mod followed;
 mod footprints;
 mod frame;
 mod leading;
+mod morphs;
 mod report;
 mod run;
 mod source;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use pliant_io::PointCacheFormat;
+use pliant_io::{Format, PointCacheFormat};
 
 use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
 use self::folder::Folder;
 use self::followed::{Followed, Handles};
 use self::leading::leading_sequence;
+use self::morphs::Morphs;
 pub use self::report::SequenceReport;
 use self::run::{Run, To};
 use self::source::{Source, cache_format};
 use crate::EngineError;
+use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, check_output, places};
 use crate::apply::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::{Destination, OutputFolder, Staging, refuse_shared};
+use crate::frames::Frames;
+use crate::loading::Loaded;
 use crate::path_text::shown;
 use crate::watch::Watch;
 
@@ -39,10 +45,17 @@ use crate::watch::Watch;
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence<'a> {
     /// The edit, which has keys at frames, and its files. The output is the folder to write, in which frames keep their
-    /// names; it is made if it is missing. For a point cache it is the cache to write, of the same kind.
+    /// names; it is made if it is missing. For a point cache it is the cache to write, of the same kind. For a glTF it is
+    /// an animation: a glTF, a point cache, or numbered files.
     pub job: EditJob<'a>,
     /// The mesh whose vertices a point cache moves.
     pub mesh: Option<&'a Path>,
+    /// The frames a second of a glTF's animation.
+    pub fps: f64,
+    /// The name of the animation in a written glTF.
+    pub name: &'a str,
+    /// Whether numbered files of a glTF's animation may replace others.
+    pub frames: ExistingFrames,
 }
 
 /// Bends the frames of a sequence and writes all of them and the report, or nothing at all.
@@ -57,9 +70,15 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let kind = Kind::of(sequence)?;
     let (first, _) = job.load(kind.mesh(), watch)?;
     let rest = first.model.rest();
-    let (source, to, gap) = match kind {
+    let (source, to, note) = match kind {
         Kind::Folder { folder, output, .. } => (Source::Folder(folder.frames), To::Folder(output), folder.gap),
         Kind::Cache { format, to, .. } => (Source::Cache(Cache::of(job.file, format, &first)?), To::File(to), None),
+        Kind::Animation { .. } => {
+            let morphs = Morphs::of(&first, sequence.fps, watch)?;
+            let files = sequence.animation_files(&first, morphs.count(), watch)?;
+            let choice = morphs.choice();
+            (Source::Morphs(morphs), To::Animation(files), choice)
+        }
     };
     let in_edit = |source| job.refused(source);
     let needed = edit.frames_with_places(source.count()).map_err(in_edit)?;
@@ -105,7 +124,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
         footprints: footprints.iter().map(|own| own.count).sum(),
         ..SequenceReport::default()
     };
-    report.warn(first.scene.notes().iter().cloned().chain(gap));
+    report.warn(first.scene.notes().iter().cloned().chain(note));
     let run = Run {
         bending: &bending,
         first: &first,
@@ -116,6 +135,35 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     };
     run.write(&to, report_to, begun, &mut report)?;
     Ok(report)
+}
+
+impl Sequence<'_> {
+    /// The animation to write for a glTF of `count` frames.
+    fn animation_files<'b>(
+        &'b self,
+        loaded: &'b Loaded,
+        count: usize,
+        watch: &Watch,
+    ) -> Result<AnimationFiles<'b>, EngineError> {
+        loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
+        for place in places(self.job.output, count)? {
+            self.job.refuse_outputs(&place, None, watch)?;
+        }
+        self.frames
+            .check(&Frames::of(self.job.output, count.saturating_sub(1)))?;
+        Ok(AnimationFiles {
+            loaded,
+            output: self.job.output,
+            name: self.name,
+            tolerance: MORPH_TOLERANCE,
+            fps: self.fps,
+            count,
+            moved: MovedVertices::Drawn,
+            inside_out: const { &BTreeSet::new() },
+            colours: None,
+            beside: None,
+        })
+    }
 }
 
 /// The kind of a sequence.
@@ -132,6 +180,8 @@ enum Kind {
         mesh: PathBuf,
         to: Destination,
     },
+    /// A glTF with an animation of morph targets.
+    Animation { mesh: PathBuf },
 }
 
 impl Kind {
@@ -140,9 +190,15 @@ impl Kind {
         let Some(own) = cache_format(job.file) else {
             if sequence.mesh.is_some() {
                 return Err(EngineError::Arguments(
-                    "--mesh is for a point cache (.pc2 or .mdd), and frames in a folder need none: leave it out"
+                    "--mesh is for a point cache (.pc2 or .mdd), and other sequences need none: leave it out"
                         .to_owned(),
                 ));
+            }
+            let format = Format::of_name(&job.file.to_string_lossy());
+            if matches!(format, Ok(Format::Glb | Format::Gltf)) && job.file.is_file() {
+                check_output(job.output)?;
+                let mesh = job.file.to_owned();
+                return Ok(Self::Animation { mesh });
             }
             let folder = Folder::of(job.file)?;
             return Ok(Self::Folder {
@@ -177,7 +233,7 @@ impl Kind {
 
     /// The file whose vertices and faces all frames have.
     fn mesh(&self) -> &Path {
-        let (Self::Folder { mesh, .. } | Self::Cache { mesh, .. }) = self;
+        let (Self::Folder { mesh, .. } | Self::Cache { mesh, .. } | Self::Animation { mesh }) = self;
         mesh
     }
 }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::animate::MorphReport;
+
 /// The course of an edited sequence. Every number is finite.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct SequenceReport {
@@ -17,6 +19,9 @@ pub struct SequenceReport {
     pub unsettled_frames: usize,
     /// The number of footprints that were found.
     pub footprints: usize,
+    /// The morph targets, in a glTF.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub morph: Option<MorphReport>,
     /// The time of the whole.
     pub total_ms: f64,
     /// Sentences that a person should know.

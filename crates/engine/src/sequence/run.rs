@@ -4,15 +4,18 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use glam::DVec3;
 use pliant_mesh::{Drawn, Progress};
 use rayon::prelude::*;
 
 use super::bend::{Bending, Bent};
 use super::cache::Cache;
 use super::frame::Frame;
+use super::morphs::Morphs;
 use super::report::SequenceReport;
 use super::source::Source;
 use crate::EngineError;
+use crate::animate::{AnimationFiles, AnimationWriter};
 use crate::file_error::FileError;
 use crate::files::{Destination, NewFile, OutputFolder, Share, Staged, Staging};
 use crate::loading::Loaded;
@@ -40,11 +43,13 @@ struct Done<T> {
 }
 
 /// The place of the result.
-pub(super) enum To {
+pub(super) enum To<'a> {
     /// A file for each frame.
     Folder(OutputFolder),
     /// One file.
     File(Destination),
+    /// An animation: one file, or a file for each frame.
+    Animation(AnimationFiles<'a>),
 }
 
 impl Run<'_> {
@@ -54,7 +59,7 @@ impl Run<'_> {
     /// Any refusal of a frame, and a file that can't be written.
     pub fn write(
         &self,
-        to: &To,
+        to: &To<'_>,
         report_to: Option<Destination>,
         begun: Instant,
         report: &mut SequenceReport,
@@ -69,7 +74,10 @@ impl Run<'_> {
                 self.files(frames, output, report_to.as_ref(), report)?.holding(held)
             }
             (Source::Cache(cache), To::File(to)) => self.cache(cache, to, report)?,
-            (Source::Folder(_), To::File(_)) | (Source::Cache(_), To::Folder(_)) => {
+            (Source::Morphs(morphs), To::Animation(files)) => {
+                self.animation(morphs, files, report_to.as_ref(), report)?
+            }
+            _ => {
                 return Err(EngineError::Unsupported(
                     "a folder of frames becomes a folder, and a point cache a point cache: give such an --output"
                         .to_owned(),
@@ -121,6 +129,46 @@ impl Run<'_> {
             file.write_all(&cache.header()?).map_err(refuse)?;
             let of_frame = |frame: usize| self.piece(frame, cache);
             self.each(of_frame, report, |bytes| file.write_all(&bytes).map_err(refuse))
+        })
+    }
+
+    /// An animation, written frame by frame. If no frame is bent, the file's own one is it.
+    fn animation(
+        &self,
+        morphs: &Morphs,
+        files: &AnimationFiles<'_>,
+        beside: Option<&Destination>,
+        report: &mut SequenceReport,
+    ) -> Result<Staged, EngineError> {
+        let files = AnimationFiles { beside, ..*files };
+        let mut writer = AnimationWriter::new(files, self.watch, self.staging)?;
+        let of_frame = |frame: usize| self.displacements(frame, morphs);
+        self.each(of_frame, report, |displacements| writer.push(&displacements))?;
+        let (staged, written) = match report.bent_frames {
+            0 => writer.finish_unchanged()?,
+            _ => writer.finish()?,
+        };
+        report.warn(written.warnings);
+        report.morph = written.morph;
+        Ok(staged)
+    }
+
+    /// Bends a frame of an animation, and gives the displacements of its drawn vertices since rest.
+    fn displacements(&self, frame: usize, morphs: &Morphs) -> Result<Done<Vec<DVec3>>, EngineError> {
+        self.watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
+        let mut result = morphs.displacements(frame, self.rest.positions.len());
+        let positions = morphs.positions(self.first, &result)?;
+        let bent = self.bending.frame(frame, &self.first.path, &positions, self.watch)?;
+        if let Some(bent) = &bent {
+            let drawn = self.first.model.drawn.surface_vertices();
+            for (way, vertex) in result.iter_mut().zip(drawn) {
+                *way += vertex.map_or(DVec3::ZERO, |vertex| bent.displacements[vertex.index()]);
+            }
+        }
+        Ok(Done {
+            result,
+            bent,
+            warnings: Vec::new(),
         })
     }
 

@@ -9,6 +9,7 @@ use pliant_mesh::Drawn;
 use super::cache::Cache;
 use super::folder::Folder;
 use super::frame::Frame;
+use super::morphs::Morphs;
 use crate::EngineError;
 use crate::loading::Loaded;
 use crate::watch::Watch;
@@ -19,6 +20,8 @@ pub(super) enum Source {
     Folder(Vec<PathBuf>),
     /// A point cache.
     Cache(Cache),
+    /// The mesh's own animation of morph targets.
+    Morphs(Morphs),
 }
 
 impl Source {
@@ -38,6 +41,7 @@ impl Source {
         match self {
             Self::Folder(frames) => frames.len(),
             Self::Cache(cache) => cache.count(),
+            Self::Morphs(morphs) => morphs.count(),
         }
     }
 
@@ -54,6 +58,7 @@ impl Source {
         match self {
             Self::Folder(frames) => Ok(Frame::read(&frames[frame], first, rest, watch)?.positions),
             Self::Cache(cache) => Ok(cache.frame(frame)?.positions),
+            Self::Morphs(morphs) => morphs.positions(first, &morphs.displacements(frame, rest.positions.len())),
         }
     }
 }

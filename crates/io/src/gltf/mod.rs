@@ -121,7 +121,7 @@ impl Stored {
         targets::names(&self.document, &self.meshes)
     }
 
-    /// The shapes during its first animation of morph targets; `None` if it has none.
+    /// The shapes during its last animation of morph targets; `None` if it has none.
     pub fn morph_playback(&self, file: &str, cancel: &Cancel) -> Result<Option<MorphPlayback>, ReadError> {
         let found = playback(&self.document, &self.meshes, &self.pieces, cancel);
         found.map_err(|fault| fault.of_file(file, self.format))

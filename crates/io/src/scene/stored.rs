@@ -99,7 +99,7 @@ impl Scene {
         }
     }
 
-    /// The shapes of the file's drawn vertices during its first animation of morph targets, which only a glTF can have.
+    /// The shapes of the file's drawn vertices during its last animation of morph targets, which only a glTF can have.
     /// `file` is used in messages only.
     ///
     /// # Errors

@@ -304,17 +304,22 @@ def sequence(
     output: File,
     mesh: File | None = None,
     report: File | None = None,
+    fps: float = 24.0,
+    replace: bool = False,
     method: Method | None = None,
     memory: int | str | None = None,
     weld: float | None = None,
 ) -> dict[str, Any]:
     """Bends the frames of a sequence, each on its own shape, like `pliant sequence`.
 
-    :param frames: the folder of the frames, or a point cache (pc2, mdd).
+    :param frames: the folder of the frames, a point cache (pc2, mdd), or a glb or gltf with an animation of morph targets.
     :param edit: the path of an edit with `keys` at frames, or a dict in the edit format.
-    :param output: the folder to write, in which frames keep their names; for a point cache the cache to write.
+    :param output: the folder to write, in which frames keep their names; for a point cache the cache to write, and for
+        a glTF an animation as of `animate`.
     :param mesh: the mesh whose vertices a point cache moves.
     :param report: the file for the report.
+    :param fps: the frames a second in which a glTF's animation is edited.
+    :param replace: whether numbered files of a glTF's animation may replace others.
     :param method: the method instead of the edit's, as in `apply`.
     :param memory: the most memory for the binding of a frame, as in `apply`.
     :param weld: the distance within which vertices are joined; by default the edit's.

@@ -1,5 +1,6 @@
 //! `pliant sequence`: an edit of a sequence of shapes.
 
 mod keys;
+mod morphs;
 mod take;
 mod ways;

@@ -178,12 +178,10 @@ fn a_bent_path_carries_the_whole_body_upright_and_keys_act_on_it() {
     }
     // At rest every byte stays.
     bent["keys"] = json!([]);
-    for rest in [
-        json!([[0, 0, 0], [0, 0, 0], [0, 0, 0]]),
-        bent["path"]["translations"].clone(),
-    ] {
-        bent["strength"] = json!(if rest == bent["path"]["translations"] { 0.0 } else { 1.0 });
-        bent["path"]["translations"] = rest;
+    let whole = bent["path"]["translations"].clone();
+    for (translations, strength) in [(json!([[0, 0, 0], [0, 0, 0], [0, 0, 0]]), 1.0), (whole, 0.0)] {
+        bent["strength"] = json!(strength);
+        bent["path"]["translations"] = translations;
         take.edited(&bent, "rest", &[]).done();
         assert!((0..FRAMES).all(|frame| take.bytes("rest", frame) == take.bytes("in", frame)));
     }

@@ -16,6 +16,7 @@ use crate::gltf::geometry::{Instance, Pieces};
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct MorphPlayback {
     name: String,
+    others: usize,
     duration: f64,
     parts: Vec<Part>,
 }
@@ -34,6 +35,11 @@ impl MorphPlayback {
     /// The animation's name; empty if it has none.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The number of earlier animations of morph targets in the file.
+    pub fn others(&self) -> usize {
+        self.others
     }
 
     /// The time of its last key, in seconds.
@@ -58,7 +64,8 @@ impl MorphPlayback {
     }
 }
 
-/// The first animation that moves morph targets which are drawn; `None` if there is none.
+/// The last animation that moves morph targets which are drawn, because an edit adds its own at the end; `None` if there
+/// is none.
 ///
 /// # Errors
 /// A target or a list of weights that can't be read, or that is too large.
@@ -70,6 +77,7 @@ pub(crate) fn playback(
 ) -> Result<Option<MorphPlayback>, Fault> {
     let json = &document.json;
     let animations = json.member(json.root(), "animations");
+    let mut last: Option<MorphPlayback> = None;
     for at in animations.into_iter().flat_map(|at| json.elements(at)) {
         let tracks = tracks(document, at)?;
         let mut budget = document.drawing_budget();
@@ -85,14 +93,15 @@ pub(crate) fn playback(
             }
         }
         if !parts.is_empty() {
-            return Ok(Some(MorphPlayback {
+            last = Some(MorphPlayback {
                 name: document.name(at),
+                others: last.map_or(0, |last| last.others + 1),
                 duration: tracks.iter().map(|(_, track)| track.end()).fold(0.0, f64::max),
                 parts,
-            }));
+            });
         }
     }
-    Ok(None)
+    Ok(last)
 }
 
 fn part(

@@ -1,0 +1,93 @@
+//! The frames of a file's own animation of morph targets.
+
+use glam::DVec3;
+use pliant_io::{MorphPlayback, quoted};
+use pliant_mesh::Model;
+
+use crate::EngineError;
+use crate::animate::frame_count;
+use crate::loading::Loaded;
+use crate::path_text::shown;
+use crate::watch::Watch;
+
+/// The frames of an animation of morph targets, at a steady rate from its time 0 to its last key.
+#[derive(Debug)]
+pub(super) struct Morphs {
+    playback: MorphPlayback,
+    fps: f64,
+    count: usize,
+    /// The first drawn vertex of each surface vertex.
+    drawn_of_surface: Vec<usize>,
+}
+
+impl Morphs {
+    /// The frames of a file's last animation of morph targets.
+    ///
+    /// # Errors
+    /// The file has none, or it can't be read; a rate that gives too many frames.
+    pub fn of(file: &Loaded, fps: f64, watch: &Watch) -> Result<Self, EngineError> {
+        let found = file.scene.morph_playback(&file.path.to_string_lossy(), &watch.cancel)?;
+        let playback = found.ok_or_else(|| {
+            EngineError::Unsupported(format!(
+                "{} has no animation of morph targets: give a file that has one, a folder of frames, or a .pc2 or .mdd \
+                 cache",
+                shown(&file.path)
+            ))
+        })?;
+        Ok(Self {
+            count: frame_count(playback.duration(), fps)?,
+            drawn_of_surface: first_drawn(&file.model),
+            playback,
+            fps,
+        })
+    }
+
+    /// A sentence about the choice, if the file has several such animations.
+    pub fn choice(&self) -> Option<String> {
+        let (name, others) = (quoted(self.playback.name()), self.playback.others());
+        (others > 0).then(|| {
+            let count = others + 1;
+            format!("the file has {count} animations of morph targets: the last one, {name}, is edited")
+        })
+    }
+
+    /// The number of frames.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The displacements of `count` drawn vertices since rest in a frame.
+    pub fn displacements(&self, frame: usize, count: usize) -> Vec<DVec3> {
+        let mut displacements = vec![DVec3::ZERO; count];
+        self.playback.displace(frame as f64 / self.fps, &mut displacements);
+        displacements
+    }
+
+    /// The surface in a frame with these displacements of the drawn vertices, where a welded vertex goes with the first
+    /// of its drawn ones.
+    ///
+    /// # Errors
+    /// A vertex without a finite position.
+    pub fn positions(&self, file: &Loaded, displacements: &[DVec3]) -> Result<Vec<DVec3>, EngineError> {
+        let rest = &file.model.surface.positions;
+        let moved = rest.iter().zip(&self.drawn_of_surface);
+        let moved: Vec<DVec3> = moved.map(|(rest, drawn)| *rest + displacements[*drawn]).collect();
+        match moved.iter().all(|position| position.is_finite()) {
+            true => Ok(moved),
+            false => Err(EngineError::Unsupported(format!(
+                "{}: its animation moves a vertex beyond all numbers: repair its morph targets",
+                shown(&file.path)
+            ))),
+        }
+    }
+}
+
+fn first_drawn(model: &Model) -> Vec<usize> {
+    let mut first = vec![None; model.surface.positions.len()];
+    for (drawn, vertex) in model.drawn.surface_vertices().enumerate() {
+        if let Some(vertex) = vertex {
+            first[vertex.index()].get_or_insert(drawn);
+        }
+    }
+    first.into_iter().map(Option::unwrap_or_default).collect()
+}
