@@ -29,7 +29,7 @@ impl HandleTransform {
     /// A further rotation about the present position of the rest shape's `pivot`.
     pub(crate) fn turned_by(self, turn: DQuat, pivot: DVec3) -> Self {
         match self {
-            Self::Trs { .. } if turn == DQuat::IDENTITY => self,
+            _ if turn == DQuat::IDENTITY => self,
             Self::Trs {
                 translation,
                 rotation,

@@ -48,6 +48,7 @@ mod spine;
 mod stiffness;
 mod stiffness_brush;
 mod stroke;
+mod surface_snap;
 mod symmetry;
 mod taken_handle;
 mod transform;

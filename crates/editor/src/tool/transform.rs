@@ -12,6 +12,7 @@ use super::context::Context;
 use super::gesture::{Gesture, Next};
 use super::moved_controls::MovedControls;
 use super::overlay::Lit;
+use super::surface_snap::{Landing, SurfaceSnap};
 use super::transform_measure::{Measure, TransformKind};
 use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulated};
 use crate::input::{Button, Key, Modifiers, Pointer};
@@ -51,6 +52,8 @@ enum Subject {
         pivot: DVec3,
         /// Other handles that move with it, in their state at the beginning.
         companions: Vec<Handle>,
+        /// Puts it onto the surface, if it is a whole part.
+        snap: Option<SurfaceSnap>,
     },
     Controls(MovedControls),
 }
@@ -100,6 +103,7 @@ impl TransformDrag {
                 id: handle.id,
                 pivot: handle.pivot,
                 companions,
+                snap: SurfaceSnap::of(workspace, &handle, camera.up.vector()),
             },
             ending: Ending::Click,
             is_armed: true,
@@ -149,13 +153,25 @@ impl TransformDrag {
         }
     }
 
+    /// The motion onto the surface under the pointer, if Ctrl asks for it and there is one.
+    fn landing(&self, workspace: &Workspace, view: &View) -> Option<Landing> {
+        match &self.subject {
+            Subject::Handle { snap: Some(snap), .. } if self.measure.snaps_freely() => {
+                snap.landing(workspace, view, self.measure.last_px)
+            }
+            _ => None,
+        }
+    }
+
     /// Moves the object by the present transform.
     fn preview(&self, workspace: &mut Workspace, view: &View) {
         if !self.is_armed {
             return;
         }
         match &self.subject {
-            Subject::Handle { id, pivot, companions } => self.preview_handle(workspace, view, *id, *pivot, companions),
+            Subject::Handle {
+                id, pivot, companions, ..
+            } => self.preview_handle(workspace, view, *id, *pivot, companions),
             Subject::Controls(controls) => {
                 let measure = &self.measure;
                 let is_done = match measure.kind {
@@ -195,9 +211,17 @@ impl TransformDrag {
         };
         match measure.kind {
             TransformKind::Move => {
-                let way = measure.translation(view);
-                let of_other = |other: &Handle| other.transform.moved_by(way);
-                put_handles(workspace, &together(start.moved_by(way), &of_other));
+                let onto = self.landing(workspace, view);
+                let Landing { turn, way } = onto.unwrap_or_else(|| Landing::without_turn(measure.translation(view)));
+                let of_other = |other: &Handle| {
+                    let arm = other.centre() - measure.centre;
+                    let own = other.transform.turned_by(turn, other.pivot);
+                    own.moved_by(turn * arm - arm + way)
+                };
+                put_handles(
+                    workspace,
+                    &together(start.turned_by(turn, pivot).moved_by(way), &of_other),
+                );
             }
             TransformKind::Turn => {
                 let (axis, angle_rad) = (measure.turn_axis(view), measure.angle_rad());
@@ -254,14 +278,22 @@ impl Gesture for TransformDrag {
         Lit::Gizmo(self.measure.part)
     }
 
-    fn status(&self, _: &Workspace, view: &View) -> Option<String> {
+    fn status(&self, workspace: &Workspace, view: &View) -> Option<String> {
         let end = match self.ending {
             Ending::Click => "click or Enter to keep it",
             Ending::Release(_) => "release to keep it",
         };
+        let doing = self.measure.kind.doing();
+        if self.landing(workspace, view).is_some() {
+            return Some(format!("{doing} onto the surface: {end}, Esc to cancel"));
+        }
+        let may_land = matches!(&self.subject, Subject::Handle { snap: Some(_), .. });
+        let snap = match self.measure.kind {
+            TransformKind::Move if may_land => "Ctrl puts it onto the surface, ",
+            _ => "",
+        };
         Some(format!(
-            "{}{} by {}: x, y or z chooses an axis, digits set the amount, {end}, Esc to cancel",
-            self.measure.kind.doing(),
+            "{doing}{} by {}: {snap}x, y or z chooses an axis, digits set the amount, {end}, Esc to cancel",
             self.measure.constraint.label(),
             self.measure.label(view),
         ))
@@ -274,7 +306,10 @@ impl Gesture for TransformDrag {
         };
         self.is_armed.then(|| Readout {
             at,
-            text: self.measure.label(view),
+            text: match self.landing(workspace, view) {
+                Some(_) => "onto the surface".to_owned(),
+                None => self.measure.label(view),
+            },
         })
     }
 

@@ -101,6 +101,12 @@ impl Measure {
         self.last_px = position_px;
     }
 
+    /// Returns true if Ctrl snaps a move that no axis and no number restricts.
+    pub(super) fn snaps_freely(&self) -> bool {
+        let is_free = self.kind == TransformKind::Move && self.constraint == Constraint::Free;
+        self.snaps && is_free && self.number.value().is_none()
+    }
+
     /// The angle starts again, about another axis.
     pub(super) fn restart(&mut self, view: &View) {
         self.turned_rad = 0.0;

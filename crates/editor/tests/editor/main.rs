@@ -34,6 +34,7 @@ mod rig;
 mod rigid_paint;
 mod session;
 mod smoothing;
+mod snapped_parts;
 mod strength;
 mod symmetry;
 mod tips;
