@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 use pliant_deform::{BilaplacianOrder, Budget, fair};
-use pliant_mesh::{Cancel, DistanceSearch, Surface, SurfaceVertex, Topology};
+use pliant_mesh::{Cancel, Curve, DistanceSearch, Surface, SurfaceVertex, Topology};
 
 /// The rings around the vertices beside a curve that stay.
 const RINGS: usize = 2;
@@ -28,7 +28,10 @@ pub(crate) fn details(
 ) -> Result<Vec<(usize, DVec3)>, String> {
     let free: Vec<usize> = inner(surface, vertices).into_iter().filter(|v| is_beside(*v)).collect();
     let Some(&first) = free.first() else {
-        return Err("has no vertex of the handle with two rings of others around it: select more vertices".to_owned());
+        return Err(
+            "has no vertex of the handle with two rings of others around it: make it wider, or select more vertices"
+                .to_owned(),
+        );
     };
     let mut patch = Patch::around(surface, &free);
     let centre = surface.positions[first];
@@ -77,6 +80,33 @@ pub(crate) fn beside(
         vertices.dedup();
     }
     vertices
+}
+
+/// The vertices under a curve along the surface, from the one of `start` that is nearest to its beginning on: each is the
+/// nearest one that a walk along edges finds from the one before. Vertices may come more than once.
+pub(crate) fn under(
+    topology: &Topology,
+    position: impl Fn(SurfaceVertex) -> DVec3,
+    start: &[SurfaceVertex],
+    curve: &Curve,
+) -> Vec<SurfaceVertex> {
+    let mut found = Vec::new();
+    for place in curve.station_places() {
+        let point = curve.position(place);
+        let distance = |v: SurfaceVertex| position(v).distance_squared(point);
+        let nearest = |vertices: &[SurfaceVertex]| {
+            let of_all = vertices.iter().copied();
+            of_all.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        };
+        let Some(mut here) = found.last().copied().or_else(|| nearest(start)) else {
+            break;
+        };
+        while let Some(next) = nearest(topology.neighbours(here)).filter(|next| distance(*next) < distance(here)) {
+            here = next;
+        }
+        found.push(here);
+    }
+    found
 }
 
 /// Those of some vertices, ascending, with two rings of others of them around them.

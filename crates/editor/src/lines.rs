@@ -79,12 +79,13 @@ impl Lines {
         own
     }
 
-    /// The same with the present way of each handle's curve, by the handle's number; curves with another rest stay.
+    /// The same with the present way of each handle's curve, by the handle's number; curves with another rest stay, and so
+    /// does the width of a crease.
     pub(crate) fn moved<'a>(&self, present: impl Fn(usize) -> Option<&'a HandleCurve>) -> Self {
         let moved = |laid: &Laid| match (&laid.vertices, present(laid.handle)) {
-            (Followers::Curve(curve, places), Some(present)) if present.binds_as(curve) => Laid {
+            (Followers::Curve(curve, places), Some(present)) if present.is_keyed_as(curve) => Laid {
                 handle: laid.handle,
-                vertices: Followers::Curve(present.clone(), Arc::clone(places)),
+                vertices: Followers::Curve(present.clone().as_wide_as(curve), Arc::clone(places)),
             },
             _ => laid.clone(),
         };

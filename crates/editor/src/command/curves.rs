@@ -2,7 +2,8 @@
 
 use super::entry::{Action, Entry, Reason, Scope, State, always, item, unless};
 use crate::workspace::{
-    divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
+    divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, set_crease_width,
+    sharpen_crease,
 };
 
 /// Lets the points of curves follow a dragged one at their distances, or no longer.
@@ -87,14 +88,24 @@ pub(super) const SET_BEND_RANGE: Entry<[f64; 2]> = Entry {
 pub(super) const SHARPEN_CREASE: Entry<f64> = Entry {
     listed: &[],
     scope: Scope::Document,
-    unavailable: |state, _| {
-        let curve = selected_curve(state.workspace);
-        let has_crease = curve.is_some_and(|(_, curve)| curve.crease().is_some());
-        let why = "The selected handle follows no crease: draw one with the shape Crease.";
-        without_curve(state).or_else(|| unless(has_crease, why))
-    },
+    unavailable: |state, _| without_crease(state),
     action: Action::Do(|context, sharpen| sharpen_crease(context.workspace, sharpen)),
 };
+
+/// Makes the crease along the curve wider or narrower.
+pub(super) const SET_CREASE_WIDTH: Entry<f64> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, _| without_crease(state),
+    action: Action::Do(|context, width| set_crease_width(context.workspace, width)),
+};
+
+fn without_crease(state: &State<'_>) -> Option<Reason> {
+    let curve = selected_curve(state.workspace);
+    let has_crease = curve.is_some_and(|(_, curve)| curve.crease().is_some());
+    let why = "The selected handle follows no crease: draw one with the shape Crease.";
+    without_curve(state).or_else(|| unless(has_crease, why))
+}
 
 fn without_curve_points(state: &State<'_>) -> Option<Reason> {
     without_curve(state).or_else(|| {

@@ -266,6 +266,8 @@ commands! {
     SetBendRange(range_deg: [f64; 2]) = curves::SET_BEND_RANGE;
     /// Makes the crease along the selected handle's curve sharper than at rest, or flatter: -1 is flat, 1 twice as sharp.
     SharpenCrease(sharpen: f64) = curves::SHARPEN_CREASE;
+    /// Sets the width of that crease, in world units: the distance from the curve up to which the surface changes.
+    SetCreaseWidth(width: f64) = curves::SET_CREASE_WIDTH;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// The gizmo's mode.

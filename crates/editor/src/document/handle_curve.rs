@@ -161,10 +161,27 @@ impl HandleCurve {
         self.creased(crease)
     }
 
+    /// The same with a crease as wide as that of another curve, if both have one.
+    #[must_use]
+    pub(crate) fn as_wide_as(self, other: &Self) -> Self {
+        let crease = self
+            .crease()
+            .zip(other.crease())
+            .map(|(own, other)| other.sharpened(own.sharpen()));
+        let crease = crease.or(self.crease());
+        self.creased(crease)
+    }
+
     /// Returns true if what a binding knows of both is the same: the curve at rest and the width of its crease.
     pub(crate) fn binds_as(&self, other: &Self) -> bool {
         let width = |curve: &Self| curve.crease().map(|crease| crease.width());
         self.rest() == other.rest() && width(self) == width(other)
+    }
+
+    /// Returns true if the values of one curve, as at a key, are values of the other: they rest in one place, and both or
+    /// none have a crease.
+    pub(crate) fn is_keyed_as(&self, other: &Self) -> bool {
+        self.rest() == other.rest() && self.crease().is_some() == other.crease().is_some()
     }
 
     /// The curve with the pins, the limits and the crease of another one of as many points.

@@ -37,7 +37,7 @@ fn curve_at(keys: &[KeyFrame], handle: &Handle, time: f64) -> Option<HandleCurve
     let present = handle.line.as_ref()?.curve()?;
     let of_key = |key: &KeyFrame| {
         let own = key.curves.get(&handle.id)?;
-        own.binds_as(present).then(|| values_of(own))
+        own.is_keyed_as(present).then(|| values_of(own))
     };
     let track = numbers(keys, of_key);
     let (values, before) = track.at(time)?;

@@ -5,6 +5,7 @@ mod colours;
 mod consequences;
 mod control_selection;
 mod controls;
+mod crease_width;
 mod curves;
 mod dirty_colours;
 mod examples;
@@ -38,6 +39,7 @@ pub(crate) use colours::{light_part, region_colour, rims, tint_limb};
 pub(crate) use controls::{
     bring as bring_attachment, make as make_controls, middle, put_attachment, reset as reset_controls,
 };
+pub(crate) use crease_width::set_crease_width;
 pub(crate) use curves::{
     divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
 };

@@ -198,6 +198,11 @@ impl Workspace {
         self.adjusting.is_some()
     }
 
+    /// The document before the step that a widget is adjusting, or the present one.
+    pub(crate) fn before_adjusting(&self) -> &Document {
+        self.adjusting.as_ref().map_or(&self.document, Transaction::before)
+    }
+
     /// All following steps are one, until it is committed or aborted.
     pub(crate) fn begin_adjusting(&mut self) {
         self.adjusting = Some(self.begin("Adjust"));

@@ -3,7 +3,7 @@
 
 use crate::rig::{Fingerprint, Rig, VIEWPORT_PX};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, EditFile, Event, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
+use pliant_editor::{Command, EditFile, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
 use pliant_mesh::shapes;
 
 /// A tube along the view's horizontal axis that bends by ARAP.
@@ -19,8 +19,8 @@ fn tube() -> Rig {
     rig
 }
 
-/// The places of points in world space on the screen.
-fn px(rig: &Rig, point: DVec3) -> DVec2 {
+/// The place of a point in world space on the screen.
+pub fn px(rig: &Rig, point: DVec3) -> DVec2 {
     rig.editor.view().camera.project(point, VIEWPORT_PX).unwrap()
 }
 
@@ -45,7 +45,8 @@ fn stroke_beside(rig: &mut Rig, shape: StrokeShape, [from, to]: [f64; 2], above:
     rig.drain();
 }
 
-fn curve(rig: &Rig) -> HandleCurve {
+/// The curve of the last handle.
+pub fn curve(rig: &Rig) -> HandleCurve {
     let handle = rig.editor.document().handles().last().unwrap();
     handle.line.as_ref().unwrap().curve().unwrap().clone()
 }
@@ -379,109 +380,4 @@ fn with_symmetry_a_spine_has_a_twin_that_follows_the_mirrored_curve() {
     rig.undo();
     rig.drain();
     assert!(of(&rig, 0).is_rest() && of(&rig, 1).is_rest());
-}
-
-/// A sheet over the view's plane with a ridge along y at x = 1.5 and its mirror image at x = -1.5.
-fn ridges() -> Rig {
-    let mut right = shapes::grid(30, 40);
-    for p in &mut right.positions {
-        let (x, y) = (3.0 * p.x, 4.0 * p.y - 2.0);
-        *p = DVec3::new(x, y, -0.5 * (x - 1.5).abs());
-    }
-    let mut left = right.clone();
-    left.positions.iter_mut().for_each(|p| p.x = -p.x);
-    left.triangles.iter_mut().for_each(|corners| corners.swap(0, 1));
-    let mut rig = Rig::open(shapes::together(&[left, right]));
-    rig.choose("bilaplacian");
-    rig.command(Command::View(NamedView::Front));
-    rig.command(Command::SetBrushRadius(40.0));
-    rig.command(Command::SetTool(ToolMode::PaintHandle));
-    rig.command(Command::SetStrokeShape(StrokeShape::Crease));
-    rig.drain();
-    rig
-}
-
-/// Draws beside the ridge at x = 1.5.
-fn draw_beside_ridge(rig: &mut Rig) {
-    let way = (0..=20).map(|step| px(rig, DVec3::new(1.3, f64::from(step) * 0.1 - 1.0, -0.1)));
-    let way: Vec<DVec2> = way.collect();
-    rig.swipe(&way);
-    rig.drain();
-}
-
-#[test]
-fn a_stroke_beside_a_crease_finds_it_and_its_sharpness_is_a_number_that_is_undone_and_kept() {
-    let mut rig = ridges();
-    draw_beside_ridge(&mut rig);
-    assert_eq!(rig.editor.view().problem, None);
-    let found = curve(&rig);
-    for point in found.rest().points() {
-        assert!((point.x - 1.5).abs() < 1e-9 && point.z.abs() < 1e-9, "{point}");
-    }
-    let crease = rig.editor.selected_crease().unwrap();
-    assert!(crease.sharpen() == 0.0 && rig.largest_displacement() == 0.0);
-
-    let before = Fingerprint::of(rig.editor.document());
-    rig.send(Event::Adjust(Command::SharpenCrease(0.5)));
-    rig.send(Event::Adjust(Command::SharpenCrease(1.0)));
-    let waiting = rig.jobs.waiting();
-    assert!(
-        waiting.contains(&JobKind::Solve) && !waiting.contains(&JobKind::Bind),
-        "{waiting:?}"
-    );
-    rig.send(Event::Adjusted);
-    rig.drain();
-    let lift = |rig: &Rig, x: f64| {
-        let at = (0..rig.model.surface.positions.len()).find(|v| {
-            let p = rig.model.surface.positions[*v];
-            (p.x - x).abs() < 1e-9 && p.y.abs() < 1e-9
-        });
-        rig.editor.view().displacements[at.unwrap()].z
-    };
-    assert!(lift(&rig, 1.5) > 0.02, "{}", lift(&rig, 1.5));
-    let text = rig.editor.edit_file().unwrap().to_json();
-    let edit = EditFile::parse(&text).unwrap();
-    assert_eq!(
-        edit.handles[0].curve.as_ref().unwrap().crease(),
-        rig.editor.selected_crease()
-    );
-    let setup = edit.resolve(&rig.model).unwrap();
-    assert!(!setup.lines.is_empty());
-
-    rig.undo();
-    rig.drain();
-    assert_eq!(Fingerprint::of(rig.editor.document()), before);
-    assert_eq!(rig.largest_displacement(), 0.0);
-    rig.redo();
-    rig.drain();
-    assert_eq!(rig.editor.selected_crease().unwrap().sharpen(), 1.0);
-    rig.command(Command::SharpenCrease(9.0));
-    assert!(rig.editor.view().problem.unwrap().contains("-1 (flat) to 4"));
-    // Flat where nothing is.
-    rig.swipe(&[
-        px(&rig, DVec3::new(0.75, -0.5, -0.4)),
-        px(&rig, DVec3::new(0.75, 0.3, -0.4)),
-    ]);
-    rig.drain();
-    assert!(rig.editor.view().problem.unwrap().contains("no crease or border"));
-    assert_eq!(rig.editor.document().handles().len(), 1);
-}
-
-#[test]
-fn with_symmetry_a_crease_has_a_twin_that_is_as_sharp() {
-    let mut rig = ridges();
-    rig.command(Command::SetSymmetry(Symmetry::Axis(0)));
-    rig.drain();
-    draw_beside_ridge(&mut rig);
-    rig.command(Command::SharpenCrease(-1.0));
-    rig.drain();
-    let handles = rig.editor.document().handles();
-    let creases = handles.iter().map(|handle| handle.line.as_ref()?.curve()?.crease());
-    let creases: Vec<_> = creases.map(Option::unwrap).collect();
-    assert!(creases.len() == 2 && creases[0] == creases[1] && creases[0].sharpen() == -1.0);
-    let view = rig.editor.view();
-    let positions = rig.model.surface.positions.iter().zip(view.displacements.iter());
-    let (left, right): (Vec<_>, Vec<_>) = positions.partition(|(p, _)| p.x < 0.0);
-    let [left, right] = [left, right].map(|side| side.iter().map(|(_, way)| way.z).sum::<f64>());
-    assert!(left < -1.0 && (left / right - 1.0).abs() < 1e-6, "{left} {right}");
 }

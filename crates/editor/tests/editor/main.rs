@@ -7,6 +7,7 @@ mod carried;
 mod comparison;
 mod controls;
 mod corrections;
+mod creases;
 mod curve_strokes;
 mod curves;
 mod edit_format;
