@@ -7,10 +7,8 @@
 
 pub(crate) mod diagonals;
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use glam::{DVec2, DVec3};
+use pliant_mesh::geometry::{WithoutEar, ears};
 use pliant_mesh::{Cancel, Cancelled, DrawnVertex};
 
 use crate::convert::Polygons;
@@ -106,147 +104,16 @@ fn fan(corner_count: usize, emit: &mut impl FnMut([usize; 3])) {
     }
 }
 
-/// Ears of the polygon projected along its Newell normal. If no ear is left (a polygon that crosses itself), the corner
-/// that turns most is cut off, so that every shape gives n − 2 triangles.
-///
-/// Only a reflex corner can be in the triangle of another, so a convex polygon takes n log n steps.
+/// Ears of the polygon projected along its Newell normal; every shape gives n − 2 triangles.
 fn cut_ears(corners: &[DVec3], emit: &mut impl FnMut([usize; 3])) {
-    let flat = match flatten(corners) {
-        Some(flat) => flat,
-        None => return fan(corners.len(), emit),
-    };
-    let mut ring = Ring::of(&flat);
-    // Takes the ear with the shortest cut, which keeps slivers away in the convex polygons of scans. A corner whose
-    // neighbours have changed is in the queue again, with another version.
-    let mut ears: BinaryHeap<Reverse<Ear>> = (0..flat.len())
-        .filter_map(|corner| ring.ear(corner))
-        .map(Reverse)
-        .collect();
-    while ring.left > 3 {
-        let cut = loop {
-            match ears.pop() {
-                Some(Reverse(ear)) if ring.version[ear.corner] == ear.version => break ear.corner,
-                Some(_) => {}
-                None => break ring.sharpest(),
-            }
-        };
-        emit(ring.around(cut));
-        // Only the two neighbours of a cut corner have new triangles.
-        for neighbour in ring.remove(cut) {
-            ears.extend(ring.ear(neighbour).map(Reverse));
-        }
+    let cut = flatten(corners).and_then(|flat| {
+        let length = |a: usize, b: usize| flat[a].distance_squared(flat[b]);
+        ears(&flat, 0.0, length, WithoutEar::CutSharpest)
+    });
+    match cut {
+        Some(triangles) => triangles.into_iter().for_each(emit),
+        None => fan(corners.len(), emit),
     }
-    let first = ring.first();
-    let [last, _, second] = ring.around(first);
-    emit([first, second, last]);
-}
-
-/// A corner that can be cut off, ordered by the length of the cut and then by its number.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Ear {
-    /// The bits of a number that is not negative, which sort like the number.
-    cut_length: u64,
-    corner: usize,
-    version: u32,
-}
-
-/// The corners that are not yet cut off.
-struct Ring<'a> {
-    flat: &'a [DVec2],
-    before: Vec<usize>,
-    behind: Vec<usize>,
-    /// The number of changes of a corner's neighbours; the largest number once the corner is cut off.
-    version: Vec<u32>,
-    /// The corners that don't turn left; some of them may do so by now.
-    reflex: Vec<usize>,
-    left: usize,
-}
-
-const CUT_OFF: u32 = u32::MAX;
-
-impl<'a> Ring<'a> {
-    fn of(flat: &'a [DVec2]) -> Self {
-        let count = flat.len();
-        let mut ring = Self {
-            flat,
-            before: (0..count).map(|corner| (corner + count - 1) % count).collect(),
-            behind: (0..count).map(|corner| (corner + 1) % count).collect(),
-            version: vec![0; count],
-            reflex: Vec::new(),
-            left: count,
-        };
-        ring.reflex = (0..count).filter(|&corner| !ring.turns_left(corner)).collect();
-        ring
-    }
-
-    /// The corner between its neighbours.
-    fn around(&self, corner: usize) -> [usize; 3] {
-        [self.before[corner], corner, self.behind[corner]]
-    }
-
-    fn turn_at(&self, corner: usize) -> f64 {
-        let [a, b, c] = self.around(corner).map(|corner| self.flat[corner]);
-        turn(a, b, c)
-    }
-
-    fn turns_left(&self, corner: usize) -> bool {
-        self.turn_at(corner) > 0.0
-    }
-
-    fn is_there(&self, corner: usize) -> bool {
-        self.version[corner] != CUT_OFF
-    }
-
-    /// The lowest corner that is left.
-    fn first(&self) -> usize {
-        (0..self.flat.len()).find(|&corner| self.is_there(corner)).unwrap_or(0)
-    }
-
-    /// Cuts a corner off and gives its neighbours.
-    fn remove(&mut self, corner: usize) -> [usize; 2] {
-        let [a, _, c] = self.around(corner);
-        self.behind[a] = c;
-        self.before[c] = a;
-        self.version[corner] = CUT_OFF;
-        self.version[a] += 1;
-        self.version[c] += 1;
-        self.left -= 1;
-        // A corner that turns left goes on doing so, except in a polygon that crosses itself.
-        let mut reflex = std::mem::take(&mut self.reflex);
-        reflex.retain(|&corner| self.is_there(corner) && !self.turns_left(corner));
-        for neighbour in [a, c] {
-            if !self.turns_left(neighbour) && !reflex.contains(&neighbour) {
-                reflex.push(neighbour);
-            }
-        }
-        self.reflex = reflex;
-        [a, c]
-    }
-
-    /// The corner as an ear, if it can be cut off: it turns left and no other corner is in its triangle.
-    fn ear(&self, corner: usize) -> Option<Ear> {
-        let [a, b, c] = self.around(corner).map(|corner| self.flat[corner]);
-        let is_inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-        let blocks = |p: DVec2| p != a && p != b && p != c && is_inside(p);
-        let is_ear = turn(a, b, c) > 0.0 && !self.reflex.iter().any(|&other| blocks(self.flat[other]));
-        is_ear.then(|| Ear {
-            cut_length: a.distance_squared(c).to_bits(),
-            corner,
-            version: self.version[corner],
-        })
-    }
-
-    /// The corner that turns most; the last of equal ones.
-    fn sharpest(&self) -> usize {
-        let all = (0..self.flat.len()).filter(|&corner| self.is_there(corner));
-        all.max_by(|&a, &b| self.turn_at(a).total_cmp(&self.turn_at(b)))
-            .unwrap_or(0)
-    }
-}
-
-/// Twice the signed area of a triangle, positive when it turns left.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
-    (b - a).perp_dot(c - a)
 }
 
 /// The corners in the plane of the polygon, counterclockwise; `None` if it has no plane.

@@ -2,11 +2,9 @@
 //!
 //! The curve's points are put into triangles, and the planes through neighbouring points are followed from triangle to
 //! triangle (`walk.rs`, `track.rs`). The track never meets a vertex, so that each triangle that it passes is divided by
-//! chains from edge to edge (`polygons.rs`), and the polygons are cut into triangles (`ears.rs`). Points on an edge
-//! belong to the surface's edge, so no crack opens. The sides are found by joining everything but across the track
-//! (`sides.rs`).
+//! chains from edge to edge (`polygons.rs`), and the polygons are cut into triangles. Points on an edge belong to the
+//! surface's edge, so no crack opens. The sides are found by joining everything but across the track (`sides.rs`).
 
-mod ears;
 mod line;
 mod polygons;
 mod sides;

@@ -5,8 +5,8 @@
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
+use pliant_mesh::geometry::{WithoutEar, ears, turn};
 
-use super::ears::{triangles, turn};
 use super::track::Station;
 
 /// The number of the first station.
@@ -73,7 +73,18 @@ impl Divided {
         if let Some(ring) = &chains.ring {
             polygons = plane.around(ring.iter().map(|&s| point_of(s)).collect())?;
         }
-        let of_polygon = |polygon: &Vec<u32>| triangles(polygon, |point| plane.place(point), &length);
+        let of_polygon = |polygon: &Vec<u32>| {
+            let places: Vec<DVec2> = polygon.iter().map(|&point| plane.place(point)).collect();
+            let cut_length = |a: usize, b: usize| length(polygon[a], polygon[b]);
+            // Points that are too near to each other have no sure triangles.
+            let triangles = ears(&places, FLAT, cut_length, WithoutEar::GiveUp)?;
+            Some(
+                triangles
+                    .into_iter()
+                    .map(|triangle| triangle.map(|corner| polygon[corner]))
+                    .collect(),
+            )
+        };
         Some(Self {
             corners,
             triangles: polygons.iter().map(of_polygon).collect::<Option<_>>()?,
