@@ -471,10 +471,13 @@ fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<
     }
     if unheld.len() <= NAMED {
         let one = |(&component, holders): (&u32, Vec<(usize, usize)>)| {
-            let sentence = format!(
-                "component {component} ({} vertices) has a handle but no fixed vertex, so it can move as a whole",
-                size(component)
-            );
+            let sentence = match problem.topology.components().len() {
+                1 => "no vertex is fixed, so the shape can move as a whole".to_owned(),
+                _ => format!(
+                    "component {component} ({} vertices) has a handle but no fixed vertex, so it can move as a whole",
+                    size(component)
+                ),
+            };
             Warning::of_unheld(sentence, vec![holders])
         };
         return unheld.iter().zip(holders).map(one).collect();
