@@ -10,6 +10,7 @@ mod folder;
 mod followed;
 mod footprints;
 mod frame;
+mod kind;
 mod leading;
 mod morphs;
 mod report;
@@ -17,28 +18,25 @@ mod run;
 mod source;
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
-
-use pliant_io::{Format, PointCacheFormat};
 
 use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
-use self::folder::Folder;
 use self::followed::{Followed, Handles};
+use self::kind::Kind;
 use self::leading::leading_sequence;
 use self::morphs::Morphs;
 pub use self::report::SequenceReport;
 use self::run::{Run, To};
-use self::source::{Source, cache_format};
+use self::source::Source;
 use crate::EngineError;
-use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, check_output, places};
+use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, places};
 use crate::apply::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
-use crate::files::{Destination, OutputFolder, Staging, refuse_shared};
+use crate::files::Staging;
 use crate::frames::Frames;
 use crate::loading::Loaded;
-use crate::path_text::shown;
 use crate::watch::Watch;
 
 /// The input of [`sequence`].
@@ -67,7 +65,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let job = &sequence.job;
     let report_to = job.report_to()?;
     let edit = with_keys(job.edit)?;
-    let kind = Kind::of(sequence)?;
+    let kind = Kind::of(job, sequence.mesh)?;
     let (first, _) = job.load(kind.mesh(), watch)?;
     let rest = first.model.rest();
     let (source, to, note) = match kind {
@@ -163,77 +161,5 @@ impl Sequence<'_> {
             colours: None,
             beside: None,
         })
-    }
-}
-
-/// The kind of a sequence.
-enum Kind {
-    /// A folder of frames, the first of them, and the folder to write.
-    Folder {
-        folder: Folder,
-        mesh: PathBuf,
-        output: OutputFolder,
-    },
-    /// A point cache, its mesh, and the cache to write.
-    Cache {
-        format: PointCacheFormat,
-        mesh: PathBuf,
-        to: Destination,
-    },
-    /// A glTF with an animation of morph targets.
-    Animation { mesh: PathBuf },
-}
-
-impl Kind {
-    fn of(sequence: &Sequence<'_>) -> Result<Self, EngineError> {
-        let job = &sequence.job;
-        let Some(own) = cache_format(job.file) else {
-            if sequence.mesh.is_some() {
-                return Err(EngineError::Arguments(
-                    "--mesh is for a point cache (.pc2 or .mdd), and other sequences need none: leave it out"
-                        .to_owned(),
-                ));
-            }
-            let format = Format::of_name(&job.file.to_string_lossy());
-            if matches!(format, Ok(Format::Glb | Format::Gltf)) && job.file.is_file() {
-                check_output(job.output)?;
-                let mesh = job.file.to_owned();
-                return Ok(Self::Animation { mesh });
-            }
-            let folder = Folder::of(job.file)?;
-            return Ok(Self::Folder {
-                mesh: folder.frames[0].clone(),
-                folder,
-                output: OutputFolder::of(job.output, ("FOLDER", job.file))?,
-            });
-        };
-        if cache_format(job.output) != Some(own) {
-            return Err(EngineError::Arguments(format!(
-                "--output {} must be a point cache of the same kind as {}: give it the same extension",
-                shown(job.output),
-                shown(job.file)
-            )));
-        }
-        let Some(mesh) = sequence.mesh else {
-            return Err(EngineError::Arguments(format!(
-                "{} holds only positions: give the mesh that it was made of as --mesh",
-                shown(job.file)
-            )));
-        };
-        refuse_shared(
-            ("--output", job.output),
-            [("FOLDER_OR_FILE", job.file), ("--mesh", mesh)],
-        )?;
-        Ok(Self::Cache {
-            format: own,
-            mesh: mesh.to_owned(),
-            to: Destination::of(job.output)?,
-        })
-    }
-
-    /// The file whose vertices and faces all frames have.
-    fn mesh(&self) -> &Path {
-        let (Self::Folder { mesh, .. } | Self::Cache { mesh, .. } | Self::Animation { mesh }) = self;
-        mesh
     }
 }
