@@ -5,4 +5,5 @@ mod files;
 mod made;
 mod materials;
 mod obj_names;
+mod smoothing_groups;
 mod stopped;
