@@ -7,6 +7,7 @@ use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 
 use super::ears::{triangles, turn};
+use super::snaps::Snaps;
 use super::track::Station;
 
 /// The number of the first station.
@@ -22,7 +23,7 @@ pub(super) struct Divided {
     pub(super) corners: [SurfaceVertex; 3],
     /// Counterclockwise, by numbers of points.
     pub(super) polygons: Vec<Vec<u32>>,
-    /// The triangles of each polygon.
+    /// The triangles of each polygon, with stations put onto corners.
     pub(super) triangles: Vec<Vec<[u32; 3]>>,
 }
 
@@ -45,7 +46,7 @@ impl Divided {
     pub(super) fn of(
         corners: [SurfaceVertex; 3],
         chains: &Chains,
-        stations: &[Station],
+        (stations, snaps): (&[Station], &Snaps),
         length: impl Fn(u32, u32) -> f64,
     ) -> Option<Self> {
         let plane = Plane { corners, stations };
@@ -73,7 +74,11 @@ impl Divided {
         if let Some(ring) = &chains.ring {
             polygons = plane.around(ring.iter().map(|&s| point_of(s)).collect())?;
         }
-        let of_polygon = |polygon: &Vec<u32>| triangles(polygon, |point| plane.place(point), &length);
+        // A polygon whose points are all at two corners leaves nothing.
+        let of_polygon = |polygon: &Vec<u32>| match plane.snapped(polygon, snaps) {
+            snapped if snapped.len() < 3 => Some(Vec::new()),
+            snapped => triangles(&snapped, |point| plane.place(point), &length),
+        };
         Some(Self {
             corners,
             triangles: polygons.iter().map(of_polygon).collect::<Option<_>>()?,
@@ -105,6 +110,21 @@ impl Plane<'_> {
 
     fn corner(&self, vertex: SurfaceVertex) -> Option<usize> {
         self.corners.iter().position(|&corner| corner == vertex)
+    }
+
+    /// A polygon whose stations are at the corners that they are put onto.
+    fn snapped(&self, polygon: &[u32], snaps: &Snaps) -> Vec<u32> {
+        let place = |&point: &u32| {
+            let station = point.checked_sub(FIRST_STATION);
+            let corner = station.and_then(|station| self.corner(snaps.at(station as usize)?));
+            corner.map_or(point, |corner| corner as u32)
+        };
+        let mut snapped: Vec<u32> = polygon.iter().map(place).collect();
+        snapped.dedup();
+        while snapped.len() > 1 && snapped.first() == snapped.last() {
+            snapped.pop();
+        }
+        snapped
     }
 
     /// The triangle's outline, with the ends of all chains; `None` if two are in one place.
