@@ -85,7 +85,7 @@ impl Lines {
         let moved = |laid: &Laid| match (&laid.vertices, present(laid.handle)) {
             (Followers::Curve(curve, places), Some(present)) if present.is_keyed_as(curve) => Laid {
                 handle: laid.handle,
-                vertices: Followers::Curve(present.clone().as_wide_as(curve), Arc::clone(places)),
+                vertices: Followers::Curve(present.clone().with_width_of(curve), Arc::clone(places)),
             },
             _ => laid.clone(),
         };

@@ -103,6 +103,15 @@ pub enum StitchError {
         /// The number of the first point, from 0.
         from: usize,
     },
+    /// Neighbouring points of a curve are on different connected parts.
+    #[error(
+        "the curve goes from one connected part to another after point {from}: cut one part after the other and hide the \
+         others, or cut along a straight line, which goes through all parts"
+    )]
+    CurveChangesPart {
+        /// The number of the first point, from 0.
+        from: usize,
+    },
     /// A curve crosses itself, or runs back along itself.
     #[error("the curve crosses itself or touches itself on the surface: draw it without crossing")]
     CurveCrossesItself,

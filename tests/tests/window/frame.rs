@@ -330,3 +330,68 @@ fn what_has_no_material_is_not_overexposed() {
         "{middle} in the middle, {high} in the brightest tenth"
     );
 }
+
+/// Every page of the panel leaves the view as wide as it was, and Play its neighbour where it was.
+#[test]
+fn pages_and_play_shift_nothing() {
+    let Some(mut session) = Session::begin() else { return };
+    let width = session.harness.state().view_rect().width();
+    for page in ["Scene", "Method", "Handles"] {
+        session.page(page);
+        assert_eq!(session.harness.state().view_rect().width(), width, "{page}");
+    }
+    session.key(Key::Num9, Modifiers::NONE);
+    session.harness.run_steps(2);
+    let before = place_of(&session, "Step flow");
+    session.harness.state_mut().command(Command::PlayFlow);
+    session.harness.run_steps(2);
+    assert!(session.harness.state().editor().view().is_playing);
+    assert_eq!(place_of(&session, "Step flow"), before);
+}
+
+/// Vertex colours are shown when a file is opened, and clay again for one without.
+#[test]
+fn a_file_with_vertex_colours_opens_in_material() {
+    let folder = Folder::new();
+    let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let faces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+    let file = |name: &str, colours: [&str; 4]| {
+        let mut text = "ply\nformat ascii 1.0\nelement vertex 4\n".to_owned();
+        for number in [
+            "float x",
+            "float y",
+            "float z",
+            "uchar red",
+            "uchar green",
+            "uchar blue",
+        ] {
+            text += &format!("property {number}\n");
+        }
+        text += "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+        for ([x, y, z], colour) in corners.iter().zip(colours) {
+            text += &format!("{x} {y} {z} {colour}\n");
+        }
+        folder.write(name, &(text + faces))
+    };
+    let plain = file("plain.ply", ["200 200 200"; 4]);
+    let painted = file("painted.ply", ["200 0 0", "200 0 0", "0 200 0", "0 0 200"]);
+    let source = Source::File(painted.clone());
+    let Some(mut session) = Session::begin_in(source, AppDirectories::default()) else {
+        return;
+    };
+    let shading = |session: &Session| session.harness.state().editor().view().look.shading;
+    assert_eq!(shading(&session), Shading::Material);
+    let open = |session: &mut Session, path: &PathBuf| {
+        session.harness.state_mut().open(path.clone());
+        session.settle();
+        shading(session)
+    };
+    assert_eq!(open(&mut session, &plain), Shading::Clay);
+    session.harness.state_mut().command(Command::SetShading(Shading::Zebra));
+    assert_eq!(
+        open(&mut session, &painted),
+        Shading::Zebra,
+        "a person's own choice stays"
+    );
+    assert_eq!(open(&mut session, &plain), Shading::Zebra);
+}

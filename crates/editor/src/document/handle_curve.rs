@@ -163,7 +163,7 @@ impl HandleCurve {
 
     /// The same with a crease as wide as that of another curve, if both have one.
     #[must_use]
-    pub(crate) fn as_wide_as(self, other: &Self) -> Self {
+    pub(crate) fn with_width_of(self, other: &Self) -> Self {
         let crease = self
             .crease()
             .zip(other.crease())

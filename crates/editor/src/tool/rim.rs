@@ -61,6 +61,10 @@ impl PointedRim {
 /// The pointer takes a rim that is no further away, in points.
 const NEAR_PX: f64 = 40.0;
 
+/// A visible vertex counts before a hidden one of its rim, such as one across the opening, that is nearer to the pointer
+/// by at most this, in points.
+const BEHIND_PX: f64 = 12.0;
+
 /// An orange that differs from clay and handles.
 const POINTED: [u8; 4] = [255, 150, 40, 255];
 /// The first of two rims, in blue.
@@ -116,29 +120,38 @@ impl Rims {
         self.loops.iter().map(may_follow).collect()
     }
 
-    /// The rim nearest to the pointer that a click may take, if it is near; of visible ones and hidden ones a visible one.
+    /// The rim nearest to the pointer that a click may take, if it is near, and its vertex there; visible ones first.
     pub(super) fn pointed(&self, workspace: &Workspace, view: &View, pointer_px: DVec2) -> Option<PointedRim> {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
-        let px_of = |vertex| camera.project(workspace.position(vertex), viewport_px);
-        let mut near: Vec<(f64, usize, SurfaceVertex)> = Vec::new();
-        let loops = self.loops.iter().enumerate();
-        for (number, vertices) in loops.filter(|(number, _)| self.offered[*number]) {
-            let far = |&vertex| Some((px_of(vertex)?.distance(pointer_px), number, vertex));
-            let nearest = vertices.iter().filter_map(far).min_by(|a, b| a.0.total_cmp(&b.0));
-            near.extend(nearest.filter(|(px, ..)| *px <= NEAR_PX));
-        }
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let picking = workspace.picking(view);
-        let is_seen = |&(_, _, vertex): &(f64, usize, SurfaceVertex)| {
+        let is_seen = |vertex: SurfaceVertex| {
             let position = workspace.position(vertex);
-            let origin = camera
+            let eye = camera
                 .project(position, viewport_px)
                 .map(|px| camera.ray(px, viewport_px).origin);
-            let sight = picking.as_ref().zip(origin);
-            sight.is_some_and(|(picking, origin)| picking.is_seen(vertex, position, origin))
+            let sight = picking.as_ref().zip(eye);
+            sight.is_some_and(|(picking, eye)| picking.is_seen(vertex, position, eye))
         };
-        let seen = near.iter().copied().find(is_seen);
-        let (_, number, vertex) = seen.or_else(|| near.first().copied())?;
+        // The vertex of each rim that is near, with whether it is hidden.
+        let mut near: Vec<(bool, f64, usize, SurfaceVertex)> = Vec::new();
+        let loops = self.loops.iter().enumerate();
+        for (number, vertices) in loops.filter(|(number, _)| self.offered[*number]) {
+            let far = |&vertex| {
+                let px = camera
+                    .project(workspace.position(vertex), viewport_px)?
+                    .distance(pointer_px);
+                (px <= NEAR_PX).then_some((px, vertex))
+            };
+            let mut own: Vec<(f64, SurfaceVertex)> = vertices.iter().filter_map(far).collect();
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let Some(&nearest) = own.first() else { continue };
+            let mut beside = own.iter().take_while(|(px, _)| *px <= nearest.0 + BEHIND_PX);
+            let seen = beside.find(|(_, vertex)| is_seen(*vertex));
+            let (px, vertex) = *seen.unwrap_or(&nearest);
+            near.push((seen.is_none(), px, number, vertex));
+        }
+        near.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let &(_, _, number, vertex) = near.first()?;
         let line = self.line(workspace, number);
         let next = line.iter().cycle().skip(1);
         Some(PointedRim {

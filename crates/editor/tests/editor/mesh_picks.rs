@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use pliant_editor::{
-    Button, Command, CutCurve, CutSight, Event, KeptSide, Key, MeshChange, Modifiers, Pointer, RimUse, ToolMode,
+    Button, Command, CutCurve, CutSight, Event, KeptSide, Key, MeshChange, Modifiers, NamedView, Pointer, RimUse,
+    ToolMode,
 };
 use pliant_mesh::{SurfaceVertex, shapes};
 
@@ -70,6 +71,28 @@ fn the_rim_near_the_pointer_is_shown_with_its_length_and_a_click_takes_it() {
             "{case}: the rims are no longer shown"
         );
     }
+}
+
+#[test]
+fn of_both_sides_of_an_opening_behind_each_other_the_nearer_one_is_pointed_at() {
+    let mut rig = Rig::open(bowl());
+    rig.command(Command::View(NamedView::Front));
+    rig.command(Command::ToggleProjection);
+    rig.command(Command::FillHole);
+    rig.drain();
+    let model = Arc::clone(&rig.model);
+    let rim = model.topology.boundary_loops().concat();
+    let at = |vertex: SurfaceVertex| model.surface.positions[vertex.index()];
+    // Beside the silhouette a rim's vertices are not behind each other.
+    let widest = rim.iter().map(|vertex| at(*vertex).x).fold(0.0, f64::max);
+    let mut far = 0;
+    for &vertex in rim.iter().filter(|vertex| at(**vertex).x.abs() < 0.8 * widest) {
+        rig.move_to(rig.editor.view().camera.project(at(vertex), VIEWPORT_PX).unwrap());
+        let pointed = rig.editor.view().rim.unwrap().vertex;
+        assert!(at(pointed).z > 0.0, "{} behind {}", at(pointed), at(vertex));
+        far += usize::from(at(vertex).z < 0.0);
+    }
+    assert!(far > 5, "{far}");
 }
 
 #[test]

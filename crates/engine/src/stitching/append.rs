@@ -1,5 +1,6 @@
 //! Puts a second file beside a first one: both become one shape of several parts.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::DVec3;
@@ -17,7 +18,8 @@ const GAP: f64 = 0.1;
 /// Puts B beside A along x, at the height of A's middle, to be written as `output`.
 pub(super) fn appended(files: [&Loaded; 2], output: &Path) -> Result<Made, EngineError> {
     let drawn = files.map(|file| file.model.rest());
-    let sources = [0, 1].map(|side| Source::of(files[side], &drawn[side]));
+    let mut sources = [0, 1].map(|side| Source::of(files[side], &drawn[side]));
+    name_nodes(&mut sources, files.map(|file| &*file.path));
     let channels = Channels::of(&sources);
     let [mut shape, second] = [0, 1].map(|side: usize| sources[side].with_part(channels, NewShape::whole));
     let triangles = second.triangles.len();
@@ -33,8 +35,37 @@ pub(super) fn appended(files: [&Loaded; 2], output: &Path) -> Result<Made, Engin
         dressed,
         after: None,
         warnings,
+        left_open: Vec::new(),
         done: format!("appended {}", counted(triangles, "triangle", "triangles")),
     })
+}
+
+/// Gives every node a name: its file's if it has none, with a number if A has a node of this name.
+fn name_nodes(sources: &mut [Source<'_>; 2], paths: [&Path; 2]) {
+    let mut taken: BTreeSet<String> = BTreeSet::new();
+    for (source, path) in sources.iter_mut().zip(paths) {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let free = |name: &str| {
+            let name = if name.is_empty() { &*stem } else { name };
+            let numbered = (2..).map(|number| format!("{name} {number}"));
+            let mut names = std::iter::once(name.to_owned()).chain(numbered);
+            names.find(|name| !taken.contains(name)).unwrap_or_default()
+        };
+        let look = &mut source.look;
+        for group in &mut look.groups {
+            group.node_name = free(&group.node_name);
+        }
+        // An OBJ keeps its names of objects and groups apart.
+        for [object, group, _] in look.obj.iter_mut().flat_map(|names| &mut names.groups) {
+            let own = match object.is_empty() && !group.is_empty() {
+                true => group,
+                false => object,
+            };
+            *own = free(own);
+        }
+        let names = look.groups.iter().map(|group| group.node_name.clone());
+        taken = names.collect();
+    }
 }
 
 /// The way that B moves.

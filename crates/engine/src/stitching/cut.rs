@@ -150,6 +150,7 @@ pub(super) fn cut_file(
             dressed,
             after,
             warnings,
+            left_open: Vec::new(),
             done: format!("deleted {}{split}", counted(gone, "triangle", "triangles")),
         },
         left,

@@ -133,6 +133,7 @@ pub(super) fn filled(
             dressed,
             after,
             warnings,
+            left_open: filled.unfilled.iter().map(|unfilled| unfilled.vertex).collect(),
             done,
         },
         filled,

@@ -1,5 +1,6 @@
 //! The appearance of a shape that was put together: attributes, groups, materials and polygons from its sources.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::{DVec3, Vec3};
@@ -221,11 +222,8 @@ fn obj_names(sources: &[Source<'_>]) -> Option<ObjNames> {
     for source in sources {
         let look = &source.look;
         let own = look.obj.as_ref()?;
-        let names: Vec<&str> = look
-            .groups
-            .iter()
-            .map(|group| &*look.materials[group.material].name)
-            .collect();
+        let materials: BTreeSet<usize> = look.groups.iter().map(|group| group.material).collect();
+        let names: Vec<&str> = materials.iter().map(|&place| &*look.materials[place].name).collect();
         all = Some(match all {
             None => own.clone(),
             Some(all) => all.joined(&used, own, &names)?,

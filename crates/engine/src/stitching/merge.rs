@@ -233,6 +233,7 @@ pub(super) fn merged(
         dressed,
         after,
         warnings,
+        left_open: Vec::new(),
         done: format!("joined {joined}"),
     };
     Ok(MergedFiles { made, merged })

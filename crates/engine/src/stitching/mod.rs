@@ -225,6 +225,8 @@ struct Made {
     after: Option<(ShapeCounts, usize)>,
     /// Sentences that a person should know.
     warnings: Vec<String>,
+    /// A vertex, numbered as in the file, of each border that a warning says stays open.
+    left_open: Vec<u32>,
     /// A sentence that says how much was done.
     done: String,
 }

@@ -47,6 +47,8 @@ pub struct Remade {
     pub done: String,
     /// Sentences that a person should know.
     pub warnings: Vec<String>,
+    /// A vertex, numbered as in the file, of each border that a warning says stays open.
+    pub left_open: Vec<u32>,
 }
 
 /// Changes the topology of an open file's present shape. The file on the disk stays. `second` is the file to append.
@@ -102,6 +104,7 @@ pub fn remake(
         moved,
         done: made.done,
         warnings: made.warnings,
+        left_open: made.left_open,
     })
 }
 

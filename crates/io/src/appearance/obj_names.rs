@@ -11,10 +11,9 @@ pub struct ObjNames {
     pub textures: Vec<(String, Bytes)>,
     /// True if the libraries name further maps, which are not read.
     pub names_other_maps: bool,
-    /// The `o` and the `g` name of each of the appearance's groups; empty where the file gives none.
-    pub groups: Vec<[String; 2]>,
-    /// The smoothing group of every face, if there is one.
-    pub smoothing: Option<String>,
+    /// The `o` and the `g` name and the smoothing group `s` of each of the appearance's groups; empty where the file gives
+    /// none.
+    pub groups: Vec<[String; 3]>,
 }
 
 impl ObjNames {
@@ -48,7 +47,6 @@ impl ObjNames {
         joined.textures.extend(new(&self.textures, &other.textures));
         joined.names_other_maps |= other.names_other_maps;
         joined.groups.extend(other.groups.iter().cloned());
-        joined.smoothing = joined.smoothing.filter(|own| Some(own) == other.smoothing.as_ref());
         Some(joined)
     }
 }

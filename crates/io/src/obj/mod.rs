@@ -12,6 +12,7 @@ mod materials;
 mod normals;
 mod patch;
 mod rename;
+mod smoothing;
 mod statements;
 mod stored;
 mod turned;
@@ -140,7 +141,7 @@ fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
     let smoothing = &statements.smoothing;
     let is_all_flat =
         smoothing.flat_faces.len() == statements.face_ends.len() && smoothing.flat_faces.iter().all(|is_flat| *is_flat);
-    let is_divided = smoothing.has_several || (smoothing.has_flat && !is_all_flat);
+    let is_divided = smoothing.has_several() || (smoothing.has_flat() && !is_all_flat);
     if statements.normals.is_empty() && is_divided {
         notes.push(
             "The file has smoothing groups ('s') but no normals, so edges between groups are drawn and converted as \
@@ -217,22 +218,30 @@ impl Stored {
 
     /// The same with the names that a new OBJ file gets again.
     pub(crate) fn appearance_with_names(&self) -> Appearance {
-        let smoothing = &self.statements.smoothing;
-        let is_one_group = !smoothing.has_several && !smoothing.has_flat;
-        Appearance {
-            obj: Some(ObjNames {
-                groups: self.statements.runs.iter().map(|run| run.names.clone()).collect(),
-                smoothing: smoothing.group.clone().filter(|_| is_one_group),
-                ..materials::names_of(&self.materials)
-            }),
-            ..self.appearance()
+        let mut appearance = self.appearance();
+        let (mut groups, mut names) = (Vec::new(), Vec::new());
+        for (group, run) in appearance.groups.iter().zip(&self.statements.runs) {
+            let [object, group_name] = &run.names;
+            for (triangles, smoothing) in self.statements.smoothing.parts(&group.triangles) {
+                groups.push(Group {
+                    triangles,
+                    ..group.clone()
+                });
+                names.push([object.clone(), group_name.clone(), smoothing.to_owned()]);
+            }
         }
+        appearance.groups = groups;
+        appearance.obj = Some(ObjNames {
+            groups: names,
+            ..materials::names_of(&self.materials)
+        });
+        appearance
     }
 
-    /// A sentence about the smoothing groups that a new shape does not have.
+    /// A sentence about the smoothing groups that other formats than OBJ do not have.
     pub(crate) fn smoothing_lost(&self) -> Option<String> {
         let smoothing = &self.statements.smoothing;
-        let is_divided = smoothing.has_several || (smoothing.has_flat && smoothing.group.is_some());
+        let is_divided = smoothing.has_several() || smoothing.is_partly_flat();
         is_divided.then(|| "The new shape leaves out smoothing groups ('s'): keep the .obj for them.".to_owned())
     }
 

@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use crate::obj::smoothing::Smoothing;
 use crate::objects::short_name;
 use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at, mark_len};
@@ -74,19 +75,6 @@ pub(super) struct Statements {
     pub(super) smoothing: Smoothing,
 }
 
-/// The shading that `s` lines request.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Smoothing {
-    /// True if some faces are flat.
-    pub(super) has_flat: bool,
-    /// The first group.
-    pub(super) group: Option<String>,
-    /// True if there are several groups, between which edges are hard.
-    pub(super) has_several: bool,
-    /// Whether each face is flat, up to the last flat one.
-    pub(super) flat_faces: Vec<bool>,
-}
-
 /// The highest number that a corner has named so far, and its place.
 #[derive(Clone, Copy, Default)]
 struct Highest {
@@ -128,8 +116,8 @@ struct Reader<'a> {
     material: Option<usize>,
     material_numbers: HashMap<String, usize>,
     run_is_open: bool,
-    /// True if `s off` applies to the faces that follow.
-    is_flat: bool,
+    /// The smoothing group of the faces that follow.
+    smoothing: String,
     /// The colours of `#MRGB` lines, in the vertices' order.
     polypaint: Vec<[f32; 3]>,
 }
@@ -147,7 +135,7 @@ impl<'a> Reader<'a> {
             material: None,
             material_numbers: HashMap::new(),
             run_is_open: false,
-            is_flat: false,
+            smoothing: String::new(),
             polypaint: Vec::new(),
         }
     }
@@ -182,15 +170,7 @@ impl<'a> Reader<'a> {
                 Ok(())
             }
             b"s" => {
-                let group = self.rest();
-                self.is_flat = matches!(group.as_str(), "off" | "0");
-                match group.as_str() {
-                    "off" | "0" => self.found.smoothing.has_flat = true,
-                    _ => {
-                        let first = self.found.smoothing.group.get_or_insert(group.clone());
-                        self.found.smoothing.has_several |= *first != group;
-                    }
-                }
+                self.smoothing = self.name();
                 Ok(())
             }
             b"#MRGB" => {
@@ -313,12 +293,9 @@ impl<'a> Reader<'a> {
             self.found.runs.push(run);
             self.run_is_open = true;
         }
+        let faces = self.found.face_ends.len();
+        self.found.smoothing.add_face(&self.smoothing, first, faces);
         self.found.face_ends.push(self.found.corners.len());
-        let smooth = &mut self.found.smoothing;
-        if self.is_flat {
-            smooth.flat_faces.resize(self.found.face_ends.len() - 1, false);
-            smooth.flat_faces.push(true);
-        }
         Ok(())
     }
 

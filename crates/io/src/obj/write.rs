@@ -12,6 +12,7 @@ use crate::convert::faces::{for_each_face, lost, lost_where, merged};
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decodes;
 use crate::obj::materials::neighbours;
+use crate::obj::smoothing::is_flat;
 use crate::quote::quoted;
 use crate::save::colours::unit;
 use crate::save::course::Course;
@@ -70,9 +71,6 @@ fn write_again(mesh: &NewMesh<'_>, own: &ObjNames, course: &Course<'_>) -> Resul
     let (of_vertices, of_faces) = course.split(0.6);
     let (vertices, number) = merged(mesh);
     push_vertices(&mut out, mesh, &vertices, &of_vertices)?;
-    if let Some(group) = &own.smoothing {
-        push_line(&mut out, &["s ", group]);
-    }
     let materials = mesh.appearance.materials.iter();
     let names: Vec<String> = materials.map(|material| material.name.clone()).collect();
     push_faces(&mut out, mesh, &number, Some(&names), &of_faces)?;
@@ -175,8 +173,9 @@ fn push_faces(
     let mut groups = (0..).zip(&mesh.appearance.groups).peekable();
     let names_again = mesh.appearance.obj.as_ref();
     let (mut object, mut group_name, mut material) = (String::new(), String::new(), None);
+    let mut smoothing = String::new();
     let count = mesh.positions.len() as u32;
-    if matches!(&mesh.appearance.flat[..], [whole] if *whole == (0..count)) {
+    if names_again.is_none() && matches!(&mesh.appearance.flat[..], [whole] if *whole == (0..count)) {
         push_line(out, &["s off"]);
     }
     let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());
@@ -186,10 +185,21 @@ fn push_faces(
             if group.triangles.is_empty() {
                 continue;
             }
-            let names: Option<&[String; 2]> = names_again.and_then(|again| again.groups.get(place));
-            let [own_object, own_group] =
-                names.map_or([&*group.node_name, ""], |names| names.each_ref().map(|name| &**name));
-            for (keyword, name, present) in [("o ", own_object, &mut object), ("g ", own_group, &mut group_name)] {
+            let names: Option<&[String; 3]> = names_again.and_then(|again| again.groups.get(place));
+            let [own_object, own_group, own_smoothing] = names.map_or([&*group.node_name, "", ""], |names| {
+                names.each_ref().map(|name| &**name)
+            });
+            let own_smoothing = match own_smoothing {
+                // Faces without a group are drawn smooth, so flat ones before them end.
+                "" if is_flat(&smoothing) => "1",
+                "" => &*smoothing.clone(),
+                group => group,
+            };
+            for (keyword, name, present) in [
+                ("o ", own_object, &mut object),
+                ("g ", own_group, &mut group_name),
+                ("s ", own_smoothing, &mut smoothing),
+            ] {
                 if name != present {
                     push_line(out, &[keyword, &one_line(name)]);
                     name.clone_into(present);

@@ -44,7 +44,7 @@ impl Scene {
             _ => None,
         };
         let smoothing = match &self.stored {
-            Stored::Obj(stored) => stored.smoothing_lost(),
+            Stored::Obj(stored) if !has_own_names => stored.smoothing_lost(),
             _ => None,
         };
         [motion, unread, materials, smoothing].into_iter().flatten().collect()

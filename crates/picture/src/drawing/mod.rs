@@ -92,6 +92,12 @@ impl Drawing {
         }
     }
 
+    /// Returns true if the file's vertices have different colours.
+    pub fn has_vertex_colours(&self) -> bool {
+        let colours = self.colours.as_deref().unwrap_or_default();
+        colours.windows(2).any(|pair| pair[0] != pair[1])
+    }
+
     /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
     pub fn centre(&self) -> DVec3 {
         self.poser.relative.centre

@@ -3,21 +3,24 @@
 //! The curve's points are put into triangles, and the planes through neighbouring points are followed from triangle to
 //! triangle (`walk.rs`, `track.rs`). The track never meets a vertex, so that each triangle that it passes is divided by
 //! chains from edge to edge (`polygons.rs`), and the polygons are cut into triangles. Points on an edge belong to the
-//! surface's edge, so no crack opens. The sides are found by joining everything but across the track (`sides.rs`).
+//! surface's edge, so no crack opens; those next to a vertex are put onto it (`snaps.rs`), where they would leave slivers.
+//! The sides are found by joining everything but across the track (`sides.rs`).
 
 mod line;
 mod polygons;
 mod sides;
+mod snaps;
 mod track;
 mod walk;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use pliant_mesh::{DrawnVertex, SurfaceVertex};
 
 pub use self::line::{Sight, SurfaceCurve};
 use self::polygons::{Chains, Divided, FIRST_STATION};
 use self::sides::Sides;
+use self::snaps::Snaps;
 use self::track::{Station, Track};
 use crate::error::StitchError;
 use crate::part::Part;
@@ -41,7 +44,7 @@ impl NewShape {
         spared: &[bool],
     ) -> Result<Self, StitchError> {
         let track = Track::of(part.model, curve, spared)?;
-        let divided = divided(part, &track)?;
+        let divided = divided(part, &track, curve.is_closed)?;
         let sides = Sides::of(part.model, &track, divided.values().map(|(own, _)| own));
         if keep != Keep::Both && !sides.are_apart() {
             return Err(StitchError::CurveDividesNothing);
@@ -89,19 +92,47 @@ impl NewShape {
 }
 
 /// The divided triangles, by their sorted corners, each with the number of its first polygon.
-fn divided(part: &Part<'_>, track: &Track) -> Result<BTreeMap<[SurfaceVertex; 3], (Divided, usize)>, StitchError> {
+fn divided(
+    part: &Part<'_>,
+    track: &Track,
+    is_closed: bool,
+) -> Result<BTreeMap<[SurfaceVertex; 3], (Divided, usize)>, StitchError> {
     let (model, stations) = (part.model, &track.stations);
-    let mut divided = BTreeMap::new();
-    for (triangle, chains) in chains(track) {
+    let chains = chains(track);
+    let mut snaps = Snaps::of(model, track, is_closed);
+    let divide = |triangle: u32, chains: &Chains, snaps: &Snaps| {
         let corners = model.surface.triangles[triangle as usize];
         let position = |point: u32| match point.checked_sub(FIRST_STATION) {
             Some(station) => stations[station as usize].position(model),
             None => model.surface.positions[corners[point as usize].index()],
         };
         let length = |a: u32, b: u32| position(a).distance_squared(position(b));
-        let own = Divided::of(corners, &chains, stations, length).ok_or(StitchError::CurveCrossesItself)?;
-        divided.insert(sorted(corners), (own, 0));
+        Divided::of(corners, chains, (stations, snaps), length)
+    };
+    let mut of_triangle: BTreeMap<u32, Divided> = BTreeMap::new();
+    let mut waiting: Vec<u32> = chains.keys().copied().collect();
+    while !waiting.is_empty() {
+        let mut undivided = BTreeSet::new();
+        for triangle in waiting {
+            match divide(triangle, &chains[&triangle], &snaps) {
+                Some(own) => drop(of_triangle.insert(triangle, own)),
+                None => undivided.extend(model.surface.triangles[triangle as usize]),
+            }
+        }
+        // A triangle that can't be divided with stations on its corners gets them back.
+        let changed = snaps.forget(|vertex| undivided.contains(&vertex));
+        if changed.is_empty() && !undivided.is_empty() {
+            return Err(StitchError::CurveCrossesItself);
+        }
+        let is_changed = |triangle: &&u32| {
+            let corners = model.surface.triangles[**triangle as usize];
+            corners.iter().any(|corner| changed.contains(corner))
+        };
+        waiting = chains.keys().filter(is_changed).copied().collect();
     }
+    let of_triangle = of_triangle.into_values();
+    let mut divided: BTreeMap<[SurfaceVertex; 3], (Divided, usize)> =
+        of_triangle.map(|own| (sorted(own.corners), (own, 0))).collect();
     let mut count = 0;
     for (own, first) in divided.values_mut() {
         *first = count;

@@ -7,6 +7,7 @@ use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 use pliant_mesh::geometry::{WithoutEar, ears, turn};
 
+use super::snaps::Snaps;
 use super::track::Station;
 
 /// The number of the first station.
@@ -22,7 +23,7 @@ pub(super) struct Divided {
     pub(super) corners: [SurfaceVertex; 3],
     /// Counterclockwise, by numbers of points.
     pub(super) polygons: Vec<Vec<u32>>,
-    /// The triangles of each polygon.
+    /// The triangles of each polygon, with stations put onto corners.
     pub(super) triangles: Vec<Vec<[u32; 3]>>,
 }
 
@@ -45,7 +46,7 @@ impl Divided {
     pub(super) fn of(
         corners: [SurfaceVertex; 3],
         chains: &Chains,
-        stations: &[Station],
+        (stations, snaps): (&[Station], &Snaps),
         length: impl Fn(u32, u32) -> f64,
     ) -> Option<Self> {
         let plane = Plane { corners, stations };
@@ -73,14 +74,15 @@ impl Divided {
         if let Some(ring) = &chains.ring {
             polygons = plane.around(ring.iter().map(|&s| point_of(s)).collect())?;
         }
+        // A polygon whose points are all at two corners has no triangles, and one whose points are too near to each other
+        // has no sure ones.
         let of_polygon = |polygon: &Vec<u32>| {
+            let polygon = plane.snapped(polygon, snaps);
             let places: Vec<DVec2> = polygon.iter().map(|&point| plane.place(point)).collect();
             let cut_length = |a: usize, b: usize| length(polygon[a], polygon[b]);
-            // Points that are too near to each other have no sure triangles.
-            let triangles = ears(&places, FLAT, cut_length, WithoutEar::GiveUp)?;
+            let triangles = ears(&places, FLAT, cut_length, WithoutEar::GiveUp)?.into_iter();
             Some(
                 triangles
-                    .into_iter()
                     .map(|triangle| triangle.map(|corner| polygon[corner]))
                     .collect(),
             )
@@ -116,6 +118,21 @@ impl Plane<'_> {
 
     fn corner(&self, vertex: SurfaceVertex) -> Option<usize> {
         self.corners.iter().position(|&corner| corner == vertex)
+    }
+
+    /// A polygon whose stations are at the corners that they are put onto.
+    fn snapped(&self, polygon: &[u32], snaps: &Snaps) -> Vec<u32> {
+        let place = |&point: &u32| {
+            let station = point.checked_sub(FIRST_STATION);
+            let corner = station.and_then(|station| self.corner(snaps.at(station as usize)?));
+            corner.map_or(point, |corner| corner as u32)
+        };
+        let mut snapped: Vec<u32> = polygon.iter().map(place).collect();
+        snapped.dedup();
+        while snapped.len() > 1 && snapped.first() == snapped.last() {
+            snapped.pop();
+        }
+        snapped
     }
 
     /// The triangle's outline, with the ends of all chains; `None` if two are in one place.

@@ -58,13 +58,20 @@ impl Track {
     /// The track of a curve. Parts with `spared` vertices are left alone.
     ///
     /// # Errors
-    /// Too few points, an end inside the surface, and points between which the surface has no way.
+    /// Too few points, points on several parts, an end inside the surface, and points between which the surface has no way.
     pub(super) fn of(model: &Model, curve: &SurfaceCurve, spared: &[bool]) -> Result<Self, StitchError> {
         let (found, least) = (curve.points.len(), if curve.is_closed { 3 } else { 2 });
         if found < least {
             return Err(StitchError::CurveTooShort { found, least });
         }
         let placed = placed(model, curve, spared)?;
+        let part = |point: usize| {
+            let [corner, ..] = model.surface.triangles[placed[point].triangle as usize];
+            model.topology.component(corner)
+        };
+        if let Some([from, _]) = curve.segments().find(|[from, to]| part(*from) != part(*to)) {
+            return Err(StitchError::CurveChangesPart { from });
+        }
         let mut track = Self::default();
         if !curve.is_closed {
             let mut way = to_border(model, curve, [placed[0], placed[1]], 0)?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use pliant_mesh::{Bvh, Drawn, DrawnVertex, Model, shapes};
 use pliant_stitch::{Age, Keep, NewShape, Sight, StitchError, SurfaceCurve, VertexSource};
 
@@ -136,6 +136,49 @@ fn the_sides_of_a_curve_are_the_surface_and_their_borders_lie_on_it() {
     assert!(cuts >= 20, "{cuts}");
 }
 
+/// No new point of a border is so near to a vertex that slivers are left beside it, and the border is never farther from
+/// the curve than that; without a vertex near it, it lies on the curve as before.
+#[test]
+fn a_curve_that_nearly_meets_vertices_leaves_no_slivers() {
+    let ball = shapes::model(shapes::icosphere(4));
+    let longest = ball.topology.edges().map(|[a, b]| {
+        let [a, b] = [a, b].map(|end| ball.surface.positions[end.index()]);
+        a.distance(b)
+    });
+    let longest = longest.fold(0.0, f64::max);
+    let (mut snapped, mut new, mut near) = (0, 0, 0);
+    for seed in 0..20 {
+        let sight = DVec3::from_array([0, 1, 2].map(|axis| noise(axis, seed))).normalize();
+        let curve = ring(&ball, -0.9 * sight, sight, 0.5, seed).unwrap();
+        let shape = cut(&ball, &curve, Keep::Positive).unwrap();
+        let model = shapes::model(drawn(&[&shape]));
+        assert_eq!(model.topology.boundary_loops().len(), 1);
+        let is_new = |position: DVec3| {
+            let place = shape.positions.iter().position(|own| *own == position).unwrap();
+            matches!(shape.vertices[place], VertexSource::New { .. })
+        };
+        for vertex in model.topology.boundary_loops().concat() {
+            let position = model.surface.positions[vertex.index()];
+            let off = beside(&curve, position);
+            if is_new(position) {
+                new += 1;
+                assert!(off <= 1e-6, "{off}");
+                let beside = ball.surface.positions.iter().map(|own| own.distance(position));
+                let nearest = beside.fold(f64::INFINITY, f64::min);
+                // A point of the curve itself stays where it is, and with it the crossings around it.
+                near += usize::from(nearest < 0.03 * longest);
+            } else {
+                snapped += 1;
+                assert!(off <= 0.05 * longest, "{off} of {longest}");
+            }
+        }
+    }
+    assert!(
+        snapped > 50 && new > snapped && 10 * near < snapped,
+        "{snapped} {new} {near}"
+    );
+}
+
 /// On a flat sheet all pieces face up, so that none lies on another; a curve from border to border divides it.
 #[test]
 fn a_wave_from_border_to_border_divides_a_sheet_without_an_overlap() {
@@ -214,6 +257,19 @@ fn curves_that_divide_nothing_are_refused_in_words() {
     assert_eq!(refused(&inside), StitchError::CurveEndsInside { point: 1 });
     let eight = curve(&[[0.2, 0.2], [0.83, 0.71], [0.81, 0.22], [0.21, 0.73]], true);
     assert_eq!(refused(&eight), StitchError::CurveCrossesItself);
+    let two = shapes::model(shapes::together(&[
+        shapes::grid(6, 6),
+        shapes::moved(
+            &shapes::grid(6, 6),
+            DAffine3::from_translation(1.1 * (bounds.max.x - bounds.min.x) * DVec3::X),
+        ),
+    ]));
+    let across = cut(
+        &two,
+        &curve(&[[0.0, 0.4], [0.6, 0.45], [2.1, 0.4]], false),
+        Keep::Positive,
+    );
+    assert_eq!(across.unwrap_err(), StitchError::CurveChangesPart { from: 1 });
     let short = curve(&[[0.2, 0.2], [0.8, 0.7]], true);
     assert_eq!(refused(&short), StitchError::CurveTooShort { found: 2, least: 3 });
     // Around the tube of a torus: one side goes on to the other.

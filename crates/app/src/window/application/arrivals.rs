@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Event, JobKind, Shading};
+use pliant_editor::{Command, Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
 use crate::window::application::Application;
@@ -118,6 +118,7 @@ impl Application {
             path,
             ..
         } = opened;
+        let is_file = path.is_some() || project.is_some();
         if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
             self.settings.change(|settings| settings.remember(&path));
             self.recent_pictures.want(&path);
@@ -125,22 +126,43 @@ impl Application {
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         self.pose_from(&loaded, &drawing);
         let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+        // The sample is about bending: it is in clay, as on its pictures.
+        let has_vertex_colours = is_file && drawing.has_vertex_colours();
         self.viewport.show(drawing, surface, displacements, lowest);
         self.notes = Notes {
             headline: None,
             about_file: notes,
+            open_borders: Vec::new(),
         };
         self.editor.handle(Event::Opened {
             model: Arc::clone(&loaded.model),
             name,
             beginning,
         });
+        self.show_vertex_colours(has_vertex_colours);
         if let Some(needed) = unsaved {
             self.editor.handle(Event::Recovered(needed));
             self.keep_for_recovery();
         }
         if recovered.is_some() {
             self.recovered_from = recovered;
+        }
+    }
+
+    /// Chooses *Material* for a file with vertex colours, and clay again for the next one without. Vertex colours are a
+    /// scan's or a painter's own work, and kept dye is the person's: in clay they look lost.
+    fn show_vertex_colours(&mut self, has_them: bool) {
+        let present = self.editor.view().look.shading;
+        let (instead_of, shading) = match (has_them, self.shows_vertex_colours) {
+            (true, false) => (Shading::Clay, Shading::Material),
+            (false, true) => (Shading::Material, Shading::Clay),
+            _ => return,
+        };
+        // Another shading is the person's own choice.
+        let is_replaced = present == instead_of;
+        self.shows_vertex_colours = has_them && is_replaced;
+        if is_replaced {
+            self.editor.handle(Event::Command(Command::SetShading(shading)));
         }
     }
 

@@ -35,21 +35,27 @@ impl Application {
             return;
         }
         let result = result.map(|stitched| {
-            let Stitched { mesh, shape, notes } = *stitched;
+            let Stitched {
+                mesh,
+                shape,
+                notes,
+                left_open,
+            } = *stitched;
             self.session.others.add(shape);
-            (mesh, notes)
+            (mesh, notes, left_open)
         });
         let before = self.editor.history().names().1;
         let is_appended = self.session.to_append.take().is_some();
-        let (mesh, notes) = match result {
-            Ok((mesh, notes)) => (Ok(Box::new(mesh)), notes),
-            Err(sentence) => (Err(sentence), Vec::new()),
+        let (mesh, notes, left_open) = match result {
+            Ok((mesh, notes, left_open)) => (Ok(Box::new(mesh)), notes, left_open),
+            Err(sentence) => (Err(sentence), Vec::new(), Vec::new()),
         };
         self.editor.handle(Event::Stitched(mesh));
         let mut notes = notes.into_iter();
         if let Some(done) = notes.next().filter(|_| self.editor.history().names().1 > before) {
             self.notes.headline = Some(Note::Done(done));
             self.notes.about_file = notes.collect();
+            self.notes.open_borders = left_open;
             if is_appended {
                 self.editor.handle(Event::Command(Command::FrameAll));
             }

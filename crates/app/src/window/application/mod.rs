@@ -82,6 +82,8 @@ pub struct Application {
     pub(super) redrawing: Option<Arc<BTreeSet<u32>>>,
     /// Stops the decoding of the open file's images, if it has begun.
     pub(super) images: Option<Cancel>,
+    /// True if *Material* was chosen because of the open file's vertex colours.
+    pub(super) shows_vertex_colours: bool,
 }
 
 impl Application {
@@ -158,6 +160,7 @@ impl Application {
             layout: Layout::new(places.settings.is_some(), is_to_fill_screen),
             redrawing: None,
             images: None,
+            shows_vertex_colours: false,
         };
         application.take_keys();
         application.take_memory();

@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_editor::{Command, Editor, FlowAction, FlowOptions, UpAxis};
 
 use super::share_slider::share;
-use crate::window::widgets::command_button::{choices_in_bar, command_button, icon_choice};
+use crate::window::widgets::command_button::{choices, command_button, icon_choice, play_choice};
 use crate::window::widgets::icon::Glyph;
 use crate::window::widgets::number_field::{number_field, slid};
 use crate::window::widgets::outbox::Outbox;
@@ -30,20 +30,12 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 }
 
 fn play(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    let is_playing = editor.view().is_playing;
-    let (glyph, label) = if is_playing {
-        (Glyph::Pause, "Pause")
-    } else {
-        (Glyph::Play, "Play")
-    };
-    for (command, is_chosen, glyph, label) in [
-        (Command::PlayFlow, is_playing, glyph, Some(label)),
-        // Its picture says it, and the bar of a small window has one row.
-        (Command::StepFlow, false, Glyph::StepForward, None),
-    ] {
-        if icon_choice(ui, editor, &command, is_chosen, glyph, label) {
-            commands.push(command);
-        }
+    if play_choice(ui, editor, &Command::PlayFlow, editor.view().is_playing) {
+        commands.push(Command::PlayFlow);
+    }
+    // Its picture says it, and the bar of a small window has one row.
+    if icon_choice(ui, editor, &Command::StepFlow, false, Glyph::StepForward, None) {
+        commands.push(Command::StepFlow);
     }
 }
 
@@ -64,7 +56,7 @@ fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         (FlowAction::Wash, "Wash", "Washes colour away, like painting with Ctrl."),
     ];
     let mut changed = *brush;
-    if let Some(action) = choices_in_bar(ui, brush.action, &ACTIONS) {
+    if let Some(action) = choices(ui, brush.action, &ACTIONS) {
         changed.action = action;
     }
     let label = bar_label(ui, "Colour");

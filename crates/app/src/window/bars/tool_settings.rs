@@ -9,7 +9,7 @@ use pliant_editor::{
 
 use super::flow_settings;
 use super::share_slider::share;
-use crate::window::widgets::command_button::{choices_in_bar, command_button, command_choice};
+use crate::window::widgets::command_button::{choices, command_button, command_choice};
 use crate::window::widgets::number_field::{dragged, number_field, slid};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::bar_label;
@@ -234,7 +234,7 @@ fn correction(ui: &mut egui::Ui, brush: &CorrectionBrush, commands: &mut Outbox)
             "Drags the surface with the pointer and keeps the volume.",
         ),
     ];
-    if let Some(correction) = choices_in_bar(ui, brush.correction, &CORRECTIONS) {
+    if let Some(correction) = choices(ui, brush.correction, &CORRECTIONS) {
         changed.correction = correction;
     }
     if changed.correction != Correction::Grab {
@@ -265,7 +265,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
             "Resets the stiffness to 1, like painting with Ctrl.",
         ),
     ];
-    if let Some(action) = choices_in_bar(ui, brush.action, &ACTIONS) {
+    if let Some(action) = choices(ui, brush.action, &ACTIONS) {
         changed.action = action;
     }
     // Rigid or not: no number expresses it.

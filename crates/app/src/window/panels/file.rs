@@ -35,6 +35,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     for note in &notes.about_file {
         ui.add(egui::Label::new(RichText::new(note).weak().small()).wrap());
     }
+    places(ui, "borders that stay open", &notes.open_borders, commands);
 }
 
 /// Shows the state of inward-facing parts, and the button that turns them.
@@ -70,15 +71,20 @@ fn finding(ui: &mut egui::Ui, model: &Model, kind: FindingKind, sentence: &str, 
             }
         })
         .collect();
-    if places.is_empty() {
+    self::places(ui, sentence, &places, commands);
+}
+
+/// A button for each of these vertices, numbered as in the file.
+fn places(ui: &mut egui::Ui, of: &str, vertices: &[u32], commands: &mut Outbox) {
+    if vertices.is_empty() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.label(RichText::new("Show").weak().small());
-        for (number, &vertex) in places.iter().enumerate() {
+        for (number, &vertex) in vertices.iter().enumerate() {
             let button = ui.small_button((number + 1).to_string());
-            let label = format!("Show place {} of: {sentence}", number + 1);
+            let label = format!("Show place {} of: {of}", number + 1);
             button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
             if button
                 .on_hover_text(format!("Moves the view to vertex {vertex}."))

@@ -18,7 +18,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 let name = if row == 0 { "Opened" } else { names[row - 1] };
                 let text = RichText::new(name);
                 let text = if row > done { text.weak() } else { text };
-                if ui.selectable_label(row == done, text).clicked() && row != done {
+                let step = egui::Button::selectable(row == done, text).truncate();
+                if ui.add(step).clicked() && row != done {
                     commands.push(Command::GoToStep(row));
                 }
             }

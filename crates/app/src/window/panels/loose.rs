@@ -27,7 +27,7 @@ const CHOICES: [(Loose, &str, &str); 3] = [
 /// Shows the choice for all parts and the list of those that are loose.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let document = editor.document();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         row_label(ui, "Loose parts")
             .on_hover_text("Loose parts of the surface have neither a handle nor a fixed vertex.");
         if let Some(loose) = choices(ui, document.loose(), &CHOICES) {

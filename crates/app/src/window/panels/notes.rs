@@ -9,6 +9,8 @@ pub struct Notes {
     pub headline: Option<Note>,
     /// Information about the open file, a sentence each.
     pub about_file: Vec<String>,
+    /// A vertex, numbered as in the file, of each border that a note says stays open.
+    pub open_borders: Vec<u32>,
 }
 
 /// A sentence for the person.

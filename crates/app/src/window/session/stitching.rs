@@ -52,6 +52,7 @@ fn make(
         moved,
         done,
         warnings,
+        left_open,
     } = remake(&present, &request.change, second.as_ref(), watch)?;
     let progress = watch.begin("preparing the picture");
     let mesh = request.onto(
@@ -75,6 +76,7 @@ fn make(
     let notes = std::iter::once(done).chain(warnings).chain(mesh.lost().iter().cloned());
     Ok(Box::new(Stitched {
         notes: notes.map(|note| sentence(&note)).collect(),
+        left_open,
         shape: OtherShape {
             morph_targets: loaded.scene.morph_targets(),
             drawing: Arc::new(drawing),

@@ -143,6 +143,8 @@ pub struct Stitched {
     pub shape: OtherShape,
     /// Notes for a person, a sentence each: the first says how much was done.
     pub notes: Vec<String>,
+    /// A vertex, numbered as in the file, of each border that a note says stays open.
+    pub left_open: Vec<u32>,
 }
 
 /// The purpose of choosing a path.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use eframe::egui::{self, Button, Role, Sense, Widget, WidgetInfo};
+use eframe::egui::{self, AtomExt as _, Button, Role, Sense, Widget, WidgetInfo};
 use pliant_editor::{Command, Editor};
 
 use super::icon::{self, Glyph};
@@ -61,6 +61,22 @@ pub fn icon_choice(
         None => Button::selectable(chosen, sign),
     };
     choice(ui, editor, command, chosen, button)
+}
+
+/// A button that plays or pauses, as wide in both states, so that its neighbours stay in place.
+pub fn play_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, is_playing: bool) -> bool {
+    const STATES: [(Glyph, &str); 2] = [(Glyph::Play, "Play"), (Glyph::Pause, "Pause")];
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let colour = egui::Color32::PLACEHOLDER;
+    let sizes = STATES.map(|(_, label)| {
+        ui.painter()
+            .layout_no_wrap(label.to_owned(), font.clone(), colour)
+            .size()
+    });
+    let (glyph, label) = STATES[usize::from(is_playing)];
+    let label = label.atom_size(sizes[0].max(sizes[1]));
+    let button = Button::selectable(is_playing, (icon::text(glyph, 16.0), label));
+    choice(ui, editor, command, is_playing, button)
 }
 
 /// The same as a tile as wide as there is room: the icon, and beneath it the label if the tile is high enough.
@@ -128,13 +144,9 @@ fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: imp
     }
 }
 
-/// Choices in a row of their own, each with its name and meaning; returns the one that is clicked.
+/// Choices among other widgets, where they wrap one by one, each with its name and meaning; returns the one that is
+/// clicked.
 pub fn choices<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
-    ui.horizontal(|ui| choices_in_bar(ui, chosen, all)).inner
-}
-
-/// The same among other widgets, where they wrap one by one.
-pub fn choices_in_bar<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
     let mut clicked = None;
     for (choice, name, meaning) in all {
         let label = ui.selectable_label(chosen == *choice, *name);

@@ -3,7 +3,7 @@
 use eframe::egui;
 use pliant_editor::{Animation, Command, Ease, Editor, KeyId, Skins};
 
-use crate::window::widgets::command_button::{command_button, icon_choice};
+use crate::window::widgets::command_button::{command_button, icon_choice, play_choice};
 use crate::window::widgets::icon::{self, Glyph};
 use crate::window::widgets::number_field::{dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
@@ -12,22 +12,27 @@ use crate::window::widgets::outbox::Outbox;
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let (play, label) = match editor.view().is_animating {
-            true => (Glyph::Pause, "Pause"),
-            false => (Glyph::Play, "Play"),
+        let mut buttons = |ui: &mut egui::Ui, some: &[(Command, Glyph, Option<&str>)]| {
+            for (command, glyph, label) in some {
+                if icon_choice(ui, editor, command, false, *glyph, *label) {
+                    commands.push(command.clone());
+                }
+            }
         };
-        for (command, glyph, label) in [
+        let before = [
             (Command::KeyHere, Glyph::DiamondPlus, Some("Key here")),
             (Command::GoToKey(false), Glyph::SkipBack, None),
             (Command::StepFrames(-1), Glyph::StepBack, None),
-            (Command::PlayKeys, play, Some(label)),
+        ];
+        let after = [
             (Command::StepFrames(1), Glyph::StepForward, None),
             (Command::GoToKey(true), Glyph::SkipForward, None),
-        ] {
-            let is_chosen = command == Command::PlayKeys && editor.view().is_animating;
-            if icon_choice(ui, editor, &command, is_chosen, glyph, label) {
-                commands.push(command);
-            }
+        ];
+        buttons(ui, &before);
+        let is_played = play_choice(ui, editor, &Command::PlayKeys, editor.view().is_animating);
+        buttons(ui, &after);
+        if is_played {
+            commands.push(Command::PlayKeys);
         }
         moment(ui, editor, commands);
         ui.separator();
