@@ -22,6 +22,7 @@ struct Parts {
     /// A range for each control point, or none if no joint has limits.
     bends_deg: Vec<[f64; 2]>,
     crease: Option<Crease>,
+    snap: Option<f64>,
 }
 
 /// The bends of a control point without limits, in degrees.
@@ -79,6 +80,7 @@ impl HandleCurve {
             pinned: Vec::new(),
             bends_deg: Vec::new(),
             crease: None,
+            snap: None,
         })))
     }
 
@@ -147,6 +149,21 @@ impl HandleCurve {
     /// The crease along it.
     pub fn crease(&self) -> Option<Crease> {
         self.0.crease
+    }
+
+    /// The same whose control points are rough: on a surface it is along the crease or border within this distance of
+    /// them, in world units.
+    #[must_use]
+    pub(crate) fn snapped_within(mut self, distance: Option<f64>) -> Self {
+        if distance != self.0.snap {
+            Arc::make_mut(&mut self.0).snap = distance;
+        }
+        self
+    }
+
+    /// The distance within which it is still to be put onto a crease or border ([`EditFile::resolve`](crate::EditFile::resolve)).
+    pub fn snap(&self) -> Option<f64> {
+        self.0.snap
     }
 
     /// How much sharper than at rest its crease is.
