@@ -44,6 +44,7 @@
 //! ```
 
 mod bending;
+mod chain;
 mod command;
 mod crease;
 mod cut;

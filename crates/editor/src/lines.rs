@@ -85,7 +85,7 @@ impl Lines {
         let moved = |laid: &Laid| match (&laid.vertices, present(laid.handle)) {
             (Followers::Curve(curve, places), Some(present)) if present.is_keyed_as(curve) => Laid {
                 handle: laid.handle,
-                vertices: Followers::Curve(present.clone().as_wide_as(curve), Arc::clone(places)),
+                vertices: Followers::Curve(present.clone().with_width_of(curve), Arc::clone(places)),
             },
             _ => laid.clone(),
         };
@@ -99,6 +99,29 @@ impl Lines {
     /// The number of the first handle whose crease can't be sharpened, and the reason: a sentence without its subject.
     pub(crate) fn refused(&self) -> Option<&(usize, String)> {
         self.refused.as_ref()
+    }
+
+    /// The curves with a free point, by the handles' numbers.
+    pub(crate) fn free_curves(&self) -> impl Iterator<Item = (usize, &HandleCurve)> {
+        self.each.iter().filter_map(|laid| match &laid.vertices {
+            Followers::Curve(curve, _) if curve.free_point().is_some() => Some((laid.handle, curve)),
+            _ => None,
+        })
+    }
+
+    /// The same with curves that are held, after their free points have slid by these lengths: one for each of
+    /// [`free_curves`](Self::free_curves), or none.
+    pub(crate) fn slid(&self, lengths: &[f64]) -> Self {
+        let slid: Vec<(usize, HandleCurve)> = self
+            .free_curves()
+            .zip(lengths.iter().copied().chain(std::iter::repeat(0.0)))
+            .filter_map(|((handle, curve), length)| Some((handle, curve.slid(length).or_else(|| curve.slid(0.0))?)))
+            .collect();
+        self.moved(|number| {
+            slid.iter()
+                .find(|(handle, _)| *handle == number)
+                .map(|(_, curve)| curve)
+        })
     }
 
     /// Returns true if no handle follows a line.

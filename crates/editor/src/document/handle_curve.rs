@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{BendRange, Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
 use super::crease::Crease;
+use super::free_point::FreePoint;
 
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
 /// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
@@ -23,6 +24,7 @@ struct Parts {
     bends_deg: Vec<[f64; 2]>,
     crease: Option<Crease>,
     snap: Option<f64>,
+    free: Option<FreePoint>,
 }
 
 /// The bends of a control point without limits, in degrees.
@@ -81,6 +83,7 @@ impl HandleCurve {
             bends_deg: Vec::new(),
             crease: None,
             snap: None,
+            free: None,
         })))
     }
 
@@ -166,6 +169,20 @@ impl HandleCurve {
         self.0.snap
     }
 
+    /// The same with a point that is free in depth, or with none.
+    #[must_use]
+    pub(crate) fn freed_at(mut self, free: Option<FreePoint>) -> Self {
+        if free != self.0.free {
+            Arc::make_mut(&mut self.0).free = free;
+        }
+        self
+    }
+
+    /// The point that is free in depth.
+    pub(crate) fn free_point(&self) -> Option<FreePoint> {
+        self.0.free
+    }
+
     /// How much sharper than at rest its crease is.
     fn sharpen(&self) -> f64 {
         self.crease().map_or(0.0, |crease| crease.sharpen())
@@ -180,7 +197,7 @@ impl HandleCurve {
 
     /// The same with a crease as wide as that of another curve, if both have one.
     #[must_use]
-    pub(crate) fn as_wide_as(self, other: &Self) -> Self {
+    pub(crate) fn with_width_of(self, other: &Self) -> Self {
         let crease = self
             .crease()
             .zip(other.crease())
@@ -216,6 +233,12 @@ impl HandleCurve {
     /// The positions to which the control points go.
     pub fn moved(&self) -> &[DVec3] {
         self.0.motion.moved().points()
+    }
+
+    /// The largest distance between a control point at rest and where it goes.
+    pub(crate) fn largest_way(&self) -> f64 {
+        let pairs = self.rest().points().iter().zip(self.moved());
+        pairs.map(|(from, to)| from.distance(*to)).fold(0.0, f64::max)
     }
 
     /// The twist at each control point, in degrees.
@@ -267,7 +290,11 @@ impl HandleCurve {
         let points = mirrored(rest.points());
         let moved = mirrored(self.moved());
         let curve = Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()?;
-        Some(curve.with_settings_of(self))
+        let free = self.free_point().map(|free| FreePoint {
+            along: plane.mirrored_vector(free.along),
+            ..free
+        });
+        Some(curve.with_settings_of(self).freed_at(free))
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

@@ -174,6 +174,9 @@ impl TransformDrag {
                         TransformKind::Scale => measure.scale(view) * arm - arm,
                     }
                 });
+                if measure.kind == TransformKind::Move {
+                    controls.free_depth(workspace, view.camera());
+                }
             }
         }
     }
