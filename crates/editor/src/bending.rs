@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
+use pliant_deform::{Accuracy, Attachment, Bound, Solve, SolveError, Step, Valley};
 use pliant_mesh::Cancel;
 
 use crate::document::{HandleCurve, HandleId, KeptShape};
@@ -72,6 +72,14 @@ impl Targets {
         Self {
             free_along: directions,
             ..self
+        }
+    }
+
+    /// The same after the free points of curves have slid by these lengths.
+    fn slid(&self, lengths: &[f64]) -> Self {
+        Self {
+            lines: self.lines.slid(lengths),
+            ..self.clone()
         }
     }
 
@@ -177,7 +185,10 @@ impl Kept {
         let is_same = |kept: &&Arc<Vec<DVec3>>| present.controls.as_ref().is_some_and(|own| own.len() == kept.len());
         let first = Targets {
             handles: self.targets,
-            lines: present.lines.moved(|handle| self.curves.get(handle)?.as_ref()),
+            lines: present
+                .lines
+                .moved(|handle| self.curves.get(handle)?.as_ref())
+                .slid(&[]),
             line_share: present.line_share,
             free_along: Vec::new(),
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
@@ -235,6 +246,8 @@ pub struct Bent {
     pub(crate) carried: Option<Carried>,
     /// The progress of the descent.
     pub step: Step,
+    /// The lengths by which the free points of curves slid, by the handles' numbers.
+    pub(crate) slides: Vec<(usize, f64)>,
 }
 
 impl Start {
@@ -276,11 +289,12 @@ impl Start {
         let carried = match self {
             Self::Shape(shape) => {
                 let mut solution = Arc::unwrap_or_clone(shape);
-                let step = steps(bound, targets, &mut solution, until, cancel)?;
+                let (step, slides) = slid_steps(bound, targets, &mut solution, until, cancel)?;
                 return Ok(Bent {
                     shown: Arc::new(solution),
                     carried: None,
                     step,
+                    slides,
                 });
             }
             Self::Kept(kept) => kept.solved(bound, targets, until, cancel)?,
@@ -293,7 +307,7 @@ impl Start {
             ..
         } = carried;
         let mut solution = Arc::unwrap_or_clone(solution);
-        let step = steps(bound, targets, &mut solution, until, cancel)?;
+        let (step, slides) = slid_steps(bound, targets, &mut solution, until, cancel)?;
         let shown = Arc::new(kept.carried(&at_first, &solution));
         let carried = Carried {
             corrections: kept.corrections_left(&at_first, &solution),
@@ -306,6 +320,7 @@ impl Start {
             shown,
             carried: Some(carried),
             step,
+            slides,
         })
     }
 }
@@ -318,6 +333,47 @@ impl Bent {
             None => Start::Shape(self.shown),
         }
     }
+}
+
+/// Takes steps towards the targets; once they have finished, the free points of curves slide to where the energy of the
+/// finished shape is least. Returns also their lengths, by the handles' numbers.
+fn slid_steps(
+    bound: &mut Bound,
+    targets: &Targets,
+    displacements: &mut [DVec3],
+    until: Until,
+    cancel: &Cancel,
+) -> Result<(Step, Vec<(usize, f64)>), SolveError> {
+    let mut step = steps(bound, targets, displacements, until, cancel)?;
+    let free: Vec<(usize, &HandleCurve)> = targets.lines.free_curves().collect();
+    // A part of the edit leaves the whole edit as it is.
+    if free.is_empty() || targets.line_share != 1.0 || !step.finished || step.energy == 0.0 {
+        return Ok((step, Vec::new()));
+    }
+    let motion = free.iter().map(|(_, curve)| curve.largest_way()).fold(0.0, f64::max);
+    let distance = free.iter().map(|(_, curve)| curve.rest().length()).fold(0.0, f64::max);
+    let accuracy = Accuracy::of(motion, distance, bound.solve() == Solve::Direct);
+    let mut valley = Valley::new(vec![0.0; free.len()], accuracy);
+    let mut lowest = displacements.to_vec();
+    valley.take(step.energy);
+    while !valley.is_found() {
+        let slid = targets.slid(&valley.point());
+        let tried = steps(bound, &slid, displacements, Until::End, cancel)?;
+        if cancel.is_cancelled() {
+            // Newer targets wait.
+            displacements.copy_from_slice(&lowest);
+            step.finished = false;
+            return Ok((step, Vec::new()));
+        }
+        if valley.take(tried.energy) {
+            lowest.copy_from_slice(displacements);
+        } else {
+            displacements.copy_from_slice(&lowest);
+        }
+    }
+    let found = valley.point();
+    let step = steps(bound, &targets.slid(&found), displacements, Until::End, cancel)?;
+    Ok((step, free.into_iter().map(|(handle, _)| handle).zip(found).collect()))
 }
 
 /// Takes steps towards the targets.

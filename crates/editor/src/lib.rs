@@ -44,12 +44,14 @@
 //! ```
 
 mod bending;
+mod chain;
 mod command;
 mod crease;
 mod cut;
 mod document;
 mod ease;
 mod editor;
+mod evenly;
 mod event;
 mod flow_start;
 mod format;
@@ -63,6 +65,7 @@ mod region;
 mod revision;
 mod scene_view;
 mod selection;
+mod snapped;
 mod snapshot;
 mod status;
 mod stitching;

@@ -101,6 +101,29 @@ impl Lines {
         self.refused.as_ref()
     }
 
+    /// The curves with a free point, by the handles' numbers.
+    pub(crate) fn free_curves(&self) -> impl Iterator<Item = (usize, &HandleCurve)> {
+        self.each.iter().filter_map(|laid| match &laid.vertices {
+            Followers::Curve(curve, _) if curve.free_point().is_some() => Some((laid.handle, curve)),
+            _ => None,
+        })
+    }
+
+    /// The same with curves that are held, after their free points have slid by these lengths: one for each of
+    /// [`free_curves`](Self::free_curves), or none.
+    pub(crate) fn slid(&self, lengths: &[f64]) -> Self {
+        let slid: Vec<(usize, HandleCurve)> = self
+            .free_curves()
+            .zip(lengths.iter().copied().chain(std::iter::repeat(0.0)))
+            .filter_map(|((handle, curve), length)| Some((handle, curve.slid(length).or_else(|| curve.slid(0.0))?)))
+            .collect();
+        self.moved(|number| {
+            slid.iter()
+                .find(|(handle, _)| *handle == number)
+                .map(|(_, curve)| curve)
+        })
+    }
+
     /// Returns true if no handle follows a line.
     pub fn is_empty(&self) -> bool {
         self.each.is_empty()

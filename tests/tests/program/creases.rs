@@ -202,3 +202,62 @@ fn a_crease_that_cant_be_sharpened_is_refused_in_one_sentence() {
         .apply(&ball, &whole, &out, &[])
         .refused(1, &[place, "covers a whole part"]);
 }
+
+/// An edit with a rough line beside the ridge.
+fn rough(distance: f64) -> Value {
+    let mut edit = edit("bilaplacian", 1.0);
+    let curve = &mut edit["handles"][0]["curve"];
+    curve["points"] = json!([[0.12, -0.6, 0.2], [0.15, 0, -0.1], [0.1, 0.6, 0]]);
+    curve["snap"] = json!(distance);
+    edit
+}
+
+#[test]
+fn a_rough_line_with_snap_is_the_crease_that_it_means() {
+    for slope in [0.5, -0.5] {
+        let drawn = roof(slope);
+        let mut on_it = edit("bilaplacian", 1.0);
+        on_it["handles"][0]["curve"]["points"] = json!([[0, -0.6, 0], [0, 0, 0], [0, 0.6, 0]]);
+        let exact = turn_rad(&drawn, &bent(&drawn, &on_it, &[]));
+        let [one, two] = ["1", "2"].map(|threads| bent(&drawn, &rough(0.25), &["--threads", threads]));
+        assert_eq!(one, two);
+        let found = turn_rad(&drawn, &one);
+        assert!((found / exact - 1.0).abs() < 1e-3, "{slope}: {found} {exact}");
+        let beside = edit("bilaplacian", 1.0);
+        let mut not_snapped = rough(0.25);
+        not_snapped["handles"][0]["curve"]
+            .as_object_mut()
+            .unwrap()
+            .remove("snap");
+        assert_ne!(bent(&drawn, &not_snapped, &[]), bent(&drawn, &beside, &[]));
+    }
+    // A key says how sharp it is.
+    let folder = Folder::new();
+    let (file, out) = (folder.write_mesh("in.off", &roof(0.5)), folder.at("f-#.off"));
+    let mut keyed = rough(0.25);
+    keyed["keys"] = json!([{ "time": 0.0, "curves": { "ridge": { "sharpen": 1.0 } } }]);
+    let edit = folder.write("edit.json", keyed.to_string());
+    let paths = [&file, &edit, &out].map(|path| path.to_string_lossy().into_owned());
+    let [file, edit, frames] = &paths;
+    run(["animate", file, "--edit", edit, "--output", frames]).done();
+    let whole = bent(&roof(0.5), &rough(0.25), &[]);
+    assert!(largest_distance(&open(&folder.at("f-0.off")).model.rest_positions(), &whole) < 1e-12);
+}
+
+#[test]
+fn a_rough_line_that_means_no_crease_is_refused_in_one_sentence() {
+    let folder = Folder::new();
+    let (file, out) = (folder.write_mesh("in.off", &roof(0.5)), folder.at("out.off"));
+    let refused = |edit: &Value, words: &[&str]| {
+        folder.apply(&file, edit, &out, &[]).refused(1, words);
+        assert!(!out.exists());
+    };
+    refused(
+        &rough(0.02),
+        &["handles[0].curve.snap", "no crease and no border within 0.02"],
+    );
+    refused(&rough(0.0), &["handles[0].curve", "`snap` is 0", "above 0"]);
+    let mut moved = rough(0.25);
+    moved["handles"][0]["curve"]["moved"] = json!([[0, 0, 0], [0, 1, 0], [0, 2, 0]]);
+    refused(&moved, &["handles[0].curve", "`moved`", "`transform`"]);
+}

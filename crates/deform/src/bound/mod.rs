@@ -19,6 +19,7 @@ use self::sections::Sections;
 use self::slides::Slides;
 pub use self::step::Step;
 pub use self::target::Target;
+pub use self::valley::{Accuracy, Valley};
 use crate::attachment::{check_weights, finite};
 use crate::handles::finite::Finite;
 use crate::handles::offsets::Offsets;

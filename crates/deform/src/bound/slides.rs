@@ -13,26 +13,11 @@ use super::step::Step;
 use super::valley::{Accuracy, Valley};
 use crate::handles::{Handle, Motion};
 
-/// The span between compared energies, as a share of the handles' motion.
-const SPAN: f64 = 1.0 / 16.0;
-
-/// The most length of a step of the search, in the same way.
-const REACH: f64 = 0.5;
-
-/// The tolerance of a distance, as a share of the handles' motion, for methods that solve at once ..
-const DIRECT: f64 = 1e-6;
-
-/// .. and for those that descend, whose energies have an error.
-const ITERATIVE: f64 = 4e-3;
-
 /// A place is judged once this many steps in a row ..
 const LEVEL_STEPS: u32 = 4;
 
-/// .. lower the energy by less than this share, which is an error of the place far below [`ITERATIVE`].
+/// .. lower the energy by less than this share, which is an error of the place far below the tolerance of the search.
 const LEVEL: f64 = 1e-5;
-
-/// Energies below this, times the square of the handles' motion relative to their distance, are rounding.
-const NOTHING: f64 = 1e-14;
 
 /// A handle that is free along a line.
 #[derive(Debug)]
@@ -90,14 +75,7 @@ impl Slides {
             let way = reached.zip(given).map(|(reached, given)| reached - given.shift);
             way.map_or(0.0, |way| free.direction.dot(way))
         });
-        let relative = motion / distance(handles);
-        let accuracy = Accuracy {
-            span: SPAN * motion,
-            reach: REACH * motion,
-            shrinking: if is_direct { SPAN } else { 1.0 },
-            tolerance: motion * if is_direct { DIRECT } else { ITERATIVE },
-            nothing: NOTHING * relative * relative,
-        };
+        let accuracy = Accuracy::of(motion, distance(handles), is_direct);
         self.search = Some(Search {
             valley: Valley::new(from.collect(), accuracy),
             lowest: None,

@@ -10,24 +10,54 @@ const MOST_STEPS: usize = 8;
 /// Energies that differ by less than this share are equal.
 const EQUAL: f64 = 1e-12;
 
+/// The span between compared energies, as a share of the motion.
+const SPAN: f64 = 1.0 / 16.0;
+
+/// The most length of a step of the search, in the same way.
+const REACH: f64 = 0.5;
+
+/// The tolerance of a distance, as a share of the handles' motion, for methods that solve at once ..
+const DIRECT: f64 = 1e-6;
+
+/// .. and for those that descend, whose energies have an error.
+const ITERATIVE: f64 = 4e-3;
+
+/// Energies below this, times the square of the motion relative to the distance, are rounding.
+const NOTHING: f64 = 1e-14;
+
 /// The accuracy of a search.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Accuracy {
+pub struct Accuracy {
     /// The span around the lowest point.
-    pub span: f64,
+    span: f64,
     /// The next step's span as a share of this one's: below 1 for exact energies.
-    pub shrinking: f64,
+    shrinking: f64,
     /// The most length of a step.
-    pub reach: f64,
+    reach: f64,
     /// A step by at most this length is the last one.
-    pub tolerance: f64,
+    tolerance: f64,
     /// Energies that differ by less than this are equal.
-    pub nothing: f64,
+    nothing: f64,
+}
+
+impl Accuracy {
+    /// That for lengths along which something slides that moves by `motion` and is at most `distance` from what holds
+    /// it, in the same units, above 0. Energies are exact if the method solves at once.
+    pub fn of(motion: f64, distance: f64, is_direct: bool) -> Self {
+        let relative = motion / distance;
+        Self {
+            span: SPAN * motion,
+            reach: REACH * motion,
+            shrinking: if is_direct { SPAN } else { 1.0 },
+            tolerance: motion * if is_direct { DIRECT } else { ITERATIVE },
+            nothing: NOTHING * relative * relative,
+        }
+    }
 }
 
 /// A search for the lowest point.
 #[derive(Debug)]
-pub(super) struct Valley {
+pub struct Valley {
     lowest: Vec<f64>,
     /// The energies there and around, as far as they are known.
     energies: Vec<f64>,

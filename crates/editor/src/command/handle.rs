@@ -237,8 +237,8 @@ pub(super) const FREE_OR_HOLD_DEPTH: Entry<()> = Entry {
     listed: &[item(
         (),
         "Free or hold depth",
-        "Holds the selected handle only where you see it: it stays under the pointer, and the shape chooses its distance \
-         from you. Or holds it in depth again.",
+        "Holds the selected handle, or the points of its curve that you drag, only where you see it: it stays under the \
+         pointer, and the shape chooses its distance from you. Or holds it in depth again.",
         "plane of the picture screen view projection constraint slide free distance",
         &[],
     )],
@@ -246,8 +246,8 @@ pub(super) const FREE_OR_HOLD_DEPTH: Entry<()> = Entry {
     unavailable: |state, ()| match state.unlocked() {
         Err(reason) => Some(reason),
         Ok(handle) if handle.is_pin => Some(format!("{} is pinned: unpin it first.", handle.name).into()),
-        Ok(handle) if handle.line.is_some() => {
-            Some(format!("{} follows a line, which holds it in every direction.", handle.name).into())
+        Ok(handle) if handle.line.as_ref().is_some_and(|line| line.sketch().is_some()) => {
+            Some(format!("{} follows an outline, which is drawn in the picture.", handle.name).into())
         }
         Ok(_) => None,
     },

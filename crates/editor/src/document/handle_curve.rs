@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{BendRange, Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
 use super::crease::Crease;
+use super::free_point::FreePoint;
 
 /// A curve through control points at rest and where they go: each vertex of its handle moves with the frame at its
 /// nearest place on the curve at rest ([`CurveMotion`]). Copies share it.
@@ -22,6 +23,8 @@ struct Parts {
     /// A range for each control point, or none if no joint has limits.
     bends_deg: Vec<[f64; 2]>,
     crease: Option<Crease>,
+    snap: Option<f64>,
+    free: Option<FreePoint>,
 }
 
 /// The bends of a control point without limits, in degrees.
@@ -79,6 +82,8 @@ impl HandleCurve {
             pinned: Vec::new(),
             bends_deg: Vec::new(),
             crease: None,
+            snap: None,
+            free: None,
         })))
     }
 
@@ -149,6 +154,35 @@ impl HandleCurve {
         self.0.crease
     }
 
+    /// The same whose control points are rough: on a surface it is along the crease or border within this distance of
+    /// them, in world units.
+    #[must_use]
+    pub(crate) fn snapped_within(mut self, distance: Option<f64>) -> Self {
+        if distance != self.0.snap {
+            Arc::make_mut(&mut self.0).snap = distance;
+        }
+        self
+    }
+
+    /// The distance within which it is still to be put onto a crease or border ([`EditFile::resolve`](crate::EditFile::resolve)).
+    pub fn snap(&self) -> Option<f64> {
+        self.0.snap
+    }
+
+    /// The same with a point that is free in depth, or with none.
+    #[must_use]
+    pub(crate) fn freed_at(mut self, free: Option<FreePoint>) -> Self {
+        if free != self.0.free {
+            Arc::make_mut(&mut self.0).free = free;
+        }
+        self
+    }
+
+    /// The point that is free in depth.
+    pub(crate) fn free_point(&self) -> Option<FreePoint> {
+        self.0.free
+    }
+
     /// How much sharper than at rest its crease is.
     fn sharpen(&self) -> f64 {
         self.crease().map_or(0.0, |crease| crease.sharpen())
@@ -201,6 +235,12 @@ impl HandleCurve {
         self.0.motion.moved().points()
     }
 
+    /// The largest distance between a control point at rest and where it goes.
+    pub(crate) fn largest_way(&self) -> f64 {
+        let pairs = self.rest().points().iter().zip(self.moved());
+        pairs.map(|(from, to)| from.distance(*to)).fold(0.0, f64::max)
+    }
+
     /// The twist at each control point, in degrees.
     pub fn twist_deg(&self) -> &[f64] {
         &self.0.twist_deg
@@ -250,7 +290,11 @@ impl HandleCurve {
         let points = mirrored(rest.points());
         let moved = mirrored(self.moved());
         let curve = Self::new(points, rest.is_closed(), moved, twist_deg, self.scale().to_vec()).ok()?;
-        Some(curve.with_settings_of(self))
+        let free = self.free_point().map(|free| FreePoint {
+            along: plane.mirrored_vector(free.along),
+            ..free
+        });
+        Some(curve.with_settings_of(self).freed_at(free))
     }
 
     /// The largest turn or twist of a part of the curve, in radians.

@@ -1,5 +1,5 @@
 //! A handle's curve in both formats: `points`, `closed`, `moved`, `twist`, `scale`, `pinned`,
-//! `bends` and `crease`.
+//! `bends`, `crease` and `snap`.
 
 use glam::DVec3;
 use serde::de::{Deserializer, Error};
@@ -28,6 +28,22 @@ struct StoredCurve {
     bends: Vec<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     crease: Option<StoredCrease>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    snap: Option<f64>,
+}
+
+impl StoredCurve {
+    /// The first list that is of certain points, while `snap` has yet to find them.
+    fn list_of_points(&self) -> Option<&'static str> {
+        let lists = [
+            ("moved", self.moved.is_some()),
+            ("twist", self.twist.is_some()),
+            ("scale", self.scale.is_some()),
+            ("pinned", !self.pinned.is_empty()),
+            ("bends", !self.bends.is_empty()),
+        ];
+        lists.into_iter().find(|(_, is_given)| *is_given).map(|(list, _)| list)
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -57,6 +73,7 @@ impl Serialize for HandleCurve {
                 width: crease.width(),
                 sharpen: crease.sharpen(),
             }),
+            snap: self.snap(),
         };
         stored.serialize(serializer)
     }
@@ -65,6 +82,20 @@ impl Serialize for HandleCurve {
 impl<'de> Deserialize<'de> for HandleCurve {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let stored = StoredCurve::deserialize(deserializer)?;
+        if let Some(distance) = stored
+            .snap
+            .filter(|distance| !(distance.is_finite() && *distance > 0.0))
+        {
+            return Err(D::Error::custom(format!(
+                "can't be followed: its `snap` is {distance}: give a length above 0"
+            )));
+        }
+        if let Some(list) = stored.snap.and_then(|_| stored.list_of_points()) {
+            return Err(D::Error::custom(format!(
+                "can't be followed: its `snap` finds other points, for which `{list}` is not meant: leave one of both out, \
+                 and move the handle as a whole by its `transform`"
+            )));
+        }
         let vectors =
             |numbers: Vec<Numbers<3>>| -> Vec<DVec3> { numbers.into_iter().map(|own| own.0.into()).collect() };
         let points = vectors(stored.points);
@@ -98,7 +129,7 @@ impl<'de> Deserialize<'de> for HandleCurve {
         );
         let curve = curve.map(|curve| {
             let curve = curve.pinned_at(stored.pinned).bent_within(stored.bends);
-            curve.creased(crease)
+            curve.creased(crease).snapped_within(stored.snap)
         });
         curve.map_err(|(list, refused)| D::Error::custom(format!("can't be followed: its `{list}` {refused}")))
     }

@@ -58,7 +58,7 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
         let stance = Stance { transform, turn_deg };
         Placed { stance, pivot }
     };
-    let keys = edit.timed_keys()?.into_iter().map(|key| {
+    let keys = edit.timed_keys(setup)?.into_iter().map(|key| {
         let handles = key.handles.iter();
         KeyFrame {
             time: key.time,

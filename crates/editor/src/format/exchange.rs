@@ -192,7 +192,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
             parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
-            line: edit.handles[index].line(),
+            line: handle.line.clone(),
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);

@@ -1,12 +1,12 @@
 //! An edit's keys on a model: the timeline of its handles.
 
 use super::edit_error::{EditError, remedy};
-use super::edit_file::{EditFile, HandleEntry};
+use super::edit_file::EditFile;
 use super::keys::KeyEntry;
-use super::setup::Setup;
+use super::setup::{HandleSetup, Setup};
 use crate::HandleTransform;
 use crate::bending::Targets;
-use crate::document::{HandleCurve, SplitTransform};
+use crate::document::{HandleCurve, HandleLine, SplitTransform};
 use crate::ease::Ease;
 use crate::timeline::{Key, NumberTrack, Timeline, Track, Values, values_of};
 use crate::warning::shortened;
@@ -34,7 +34,7 @@ impl EditFile {
                 place: "the edit".to_owned(),
             });
         }
-        let keys = self.timed_keys()?;
+        let keys = self.timed_keys(setup)?;
         let part = self.part_before_keys();
         let mut of_handle: Vec<Vec<Key>> = vec![Vec::new(); self.handles.len()];
         for key in &keys {
@@ -47,14 +47,14 @@ impl EditFile {
                 });
             }
         }
-        let curve = |(handle, entry): (usize, &HandleEntry)| {
+        let curve = |(handle, own): (usize, &HandleSetup)| {
             let of_key = |key: &TimedKey<'_>| {
                 let (_, curve) = key.curves.iter().find(|(own, _)| *own == handle)?;
                 Some((key.time, key.ease, values_of(curve)))
             };
             let track = NumberTrack::new(keys.iter().filter_map(of_key).collect());
-            let curve = entry.curve.clone().filter(|_| !track.is_empty())?;
-            Some((handle, curve, track))
+            let curve = own.line.as_ref()?.curve()?.clone();
+            (!track.is_empty()).then_some((handle, curve, track))
         };
         let numbers = |of: &dyn Fn(&TimedKey<'_>) -> Option<Vec<f64>>| {
             let keyed = keys.iter().filter_map(|key| {
@@ -84,7 +84,7 @@ impl EditFile {
         }
         Ok(Timeline {
             tracks: of_handle.into_iter().map(Track::new).collect(),
-            curves: self.handles.iter().enumerate().filter_map(curve).collect(),
+            curves: setup.handles.iter().enumerate().filter_map(curve).collect(),
             weights: numbers(&weights),
             strength: numbers(&|key| Some(vec![key.strength?])),
             duration: keys.last().map_or(0.0, |key| key.time),
@@ -99,11 +99,11 @@ impl EditFile {
         }
     }
 
-    /// Its keys, by time.
+    /// Its keys, by time, on the model of `setup`.
     ///
     /// # Errors
     /// Members that are for sequences, a name that no handle has, a name that two handles have.
-    pub(super) fn timed_keys(&self) -> Result<Vec<TimedKey<'_>>, EditError> {
+    pub(super) fn timed_keys(&self, setup: &Setup) -> Result<Vec<TimedKey<'_>>, EditError> {
         if let Some(member) = self.member_of_sequences() {
             return Err(EditError::Other {
                 place: "the edit".to_owned(),
@@ -115,46 +115,11 @@ impl EditFile {
             .keys
             .iter()
             .enumerate()
-            .map(|(place, key)| self.timed_key(place, key, &names))
+            .map(|(place, key)| timed_key(setup, place, key, &names))
             .collect();
         let mut keys = timed?;
         keys.sort_by(|a, b| a.time.total_cmp(&b.time));
         Ok(keys)
-    }
-
-    fn timed_key<'a>(&self, place: usize, key: &'a KeyEntry, names: &[&str]) -> Result<TimedKey<'a>, EditError> {
-        let Some(time) = key.time else {
-            return Err(EditError::Other {
-                place: format!("keys[{place}]"),
-                sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
-                    .to_owned(),
-            });
-        };
-        let named = key.handles.iter().map(|(name, transform)| {
-            let handle = handle_of(name, names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
-            Ok((handle, *transform))
-        });
-        let curves = key.curves.iter().map(|(name, curve)| {
-            let under = |error: EditError| error.under(&format!("keys[{place}].curves"));
-            let handle = handle_of(name, names).map_err(under)?;
-            let refuse = |sentence: String| EditError::Other {
-                place: format!("keys[{place}].curves.{}", shortened(name)),
-                sentence,
-            };
-            let own = self.handles[handle].curve.as_ref();
-            let own = own.ok_or_else(|| {
-                refuse("is of a handle without a `curve`: give the handle one, or remove this".to_owned())
-            })?;
-            Ok((handle, curve.on(own).map_err(refuse)?))
-        });
-        Ok(TimedKey {
-            time,
-            ease: key.ease,
-            handles: named.collect::<Result<_, EditError>>()?,
-            curves: curves.collect::<Result<_, EditError>>()?,
-            weights: key.weights.as_deref(),
-            strength: key.strength,
-        })
     }
 }
 
@@ -202,4 +167,39 @@ pub(super) fn handle_of(name: &str, names: &[&str]) -> Result<usize, EditError> 
             ),
         }),
     }
+}
+
+fn timed_key<'a>(setup: &Setup, place: usize, key: &'a KeyEntry, names: &[&str]) -> Result<TimedKey<'a>, EditError> {
+    let Some(time) = key.time else {
+        return Err(EditError::Other {
+            place: format!("keys[{place}]"),
+            sentence: "has the `frame` of a sequence, not a `time`: use `pliant sequence`, or give it a time"
+                .to_owned(),
+        });
+    };
+    let named = key.handles.iter().map(|(name, transform)| {
+        let handle = handle_of(name, names).map_err(|error| error.under(&format!("keys[{place}].handles")))?;
+        Ok((handle, *transform))
+    });
+    let curves = key.curves.iter().map(|(name, curve)| {
+        let under = |error: EditError| error.under(&format!("keys[{place}].curves"));
+        let handle = handle_of(name, names).map_err(under)?;
+        let refuse = |sentence: String| EditError::Other {
+            place: format!("keys[{place}].curves.{}", shortened(name)),
+            sentence,
+        };
+        let own = setup.handles[handle].line.as_ref().and_then(HandleLine::curve);
+        let own = own.ok_or_else(|| {
+            refuse("is of a handle without a `curve`: give the handle one, or remove this".to_owned())
+        })?;
+        Ok((handle, curve.on(own).map_err(refuse)?))
+    });
+    Ok(TimedKey {
+        time,
+        ease: key.ease,
+        handles: named.collect::<Result<_, EditError>>()?,
+        curves: curves.collect::<Result<_, EditError>>()?,
+        weights: key.weights.as_deref(),
+        strength: key.strength,
+    })
 }

@@ -17,6 +17,7 @@ use crate::bending::{Kept, Targets};
 use crate::document::{Document, HandleCurve, HandleId, HandleLine, attachment_part};
 use crate::lines::Lines;
 use crate::region::Region;
+use crate::snapped::snapped;
 use crate::warning::{shortened, worded};
 use crate::{HandleTransform, crease, outline};
 
@@ -79,6 +80,8 @@ pub struct HandleSetup {
     pub pivot: DVec3,
     /// The direction along which it is free, in world space.
     pub free_along: Option<DVec3>,
+    /// The line that it follows; a curve with `snap` is where it was found.
+    pub line: Option<HandleLine>,
 }
 
 impl Setup {
@@ -129,6 +132,7 @@ impl Setup {
                     transform: with_pivot(handle),
                     pivot: handle.pivot,
                     free_along: document.freedom(handle.id),
+                    line: handle.line.clone(),
                 })
                 .collect(),
             stiffness: stiffness.map_or_else(|| vec![1.0; region.roles.len()], <[f64]>::to_vec),
@@ -228,16 +232,32 @@ impl Setup {
 }
 
 impl HandleEntry {
-    /// Its vertices, each once.
-    fn members(&self, index: usize, model: &Model) -> Result<Vec<SurfaceVertex>, EditError> {
+    /// The line that it follows on a model: a curve with `snap` is found first.
+    fn line_on(&self, index: usize, model: &Model) -> Result<Option<HandleLine>, EditError> {
+        let snap = self.curve.as_ref().and_then(|rough| Some((rough, rough.snap()?)));
+        let Some((rough, distance)) = snap else {
+            return Ok(self.line());
+        };
+        let found = snapped(rough, model, distance).ok_or_else(|| EditError::Other {
+            place: format!("handles[{index}].curve.snap"),
+            sentence: format!(
+                "finds no crease and no border within {distance} of the points along the surface: move them nearer to one, \
+                 or give a larger distance"
+            ),
+        })?;
+        Ok(Some(HandleLine::Curve(found)))
+    }
+
+    /// Its vertices, each once; it follows `line`.
+    fn members(&self, index: usize, line: Option<&HandleLine>, model: &Model) -> Result<Vec<SurfaceVertex>, EditError> {
         let select = self.select.as_ref();
         let selected = select.map(|select| select.evaluate_at(model, &format!("handles[{index}].select")));
         let selected = selected.transpose()?;
         let surface = &model.surface;
-        match (self.line(), selected) {
+        match (line, selected) {
             (Some(HandleLine::Sketch(sketch)), selected) => {
                 let is_selected = |vertex| selected.as_ref().is_none_or(|own| own.contains(vertex));
-                let matched = outline::matched(&sketch, surface, is_selected).ok_or_else(|| EditError::Other {
+                let matched = outline::matched(sketch, surface, is_selected).ok_or_else(|| EditError::Other {
                     place: format!("handles[{index}].sketch"),
                     sentence:
                         "is beside no outline: draw it along one that is seen from there, or select more vertices"
@@ -283,11 +303,14 @@ impl EditFile {
             model,
         )?;
         let mut members = Vec::with_capacity(self.handles.len());
+        let mut lines = Vec::with_capacity(self.handles.len());
         for (index, entry) in self.handles.iter().enumerate() {
+            let line = entry.line_on(index, model)?;
             members.push(match limbs.at(index) {
                 Some(limb) => limb.own.clone(),
-                None => entry.members(index, model)?,
+                None => entry.members(index, line.as_ref(), model)?,
             });
+            lines.push(line);
         }
         let mut roles = vec![Role::Fixed; model.surface.positions.len()];
         if limbs.is_empty() || self.region != Selector::All {
@@ -333,10 +356,11 @@ impl EditFile {
                 transform: entry.transform.part(self.part_before_keys(), pivot),
                 pivot,
                 free_along: entry.free_along,
+                line: lines[index].take(),
             });
         }
-        let lines: Vec<Option<HandleLine>> = self.handles.iter().map(HandleEntry::line).collect();
-        let lines = Lines::of(lines.iter().map(Option::as_ref), &roles, &model.surface);
+        let lines = handles.iter().map(|handle| handle.line.as_ref());
+        let lines = Lines::of(lines, &roles, &model.surface);
         if let Some((index, why)) = lines.refused() {
             return Err(EditError::Other {
                 place: format!("handles[{index}].curve.crease"),

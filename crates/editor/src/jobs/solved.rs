@@ -34,6 +34,8 @@ pub struct Solved {
     pub(crate) carried: Option<Carried>,
     /// The distances by which free handles slid along their directions, at the end of a solve.
     pub(crate) slides: Vec<(HandleId, f64)>,
+    /// The lengths by which the free points of handles' curves slid.
+    pub(crate) point_slides: Vec<(HandleId, f64)>,
     /// The motions in these targets that the method can't follow.
     pub(crate) blind_to: Vec<HandleWarning>,
     /// The examples' weights that were used or found.

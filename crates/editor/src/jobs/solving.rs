@@ -129,6 +129,14 @@ impl Wanted {
         let slides = slides.filter(|(_, distance)| step.finished && *distance != 0.0);
         Ok(Solved {
             slides: slides.collect(),
+            point_slides: match step.finished {
+                true => bent
+                    .slides
+                    .iter()
+                    .map(|(number, length)| (self.handles[*number], *length))
+                    .collect(),
+                false => Vec::new(),
+            },
             jacobians: None,
             controls: ControlPlaces::of(bound),
             from_file: sum_of_shapes(self.rest.as_ref(), &bent.shown),

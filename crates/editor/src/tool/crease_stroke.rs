@@ -5,13 +5,14 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{SurfaceVertex, feature_line};
 
 use super::context::Context;
-use super::drawn_path::{DrawnPath, STEP_PX, evenly};
+use super::drawn_path::{DrawnPath, STEP_PX};
 use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::crease;
 use crate::document::{Crease, HandleCurve, HandleLine};
+use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
 use crate::region::displaced;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Curve, SurfaceVertex, triangles_under};
 
 use super::context::Context;
-use super::drawn_path::{DrawnPath, STEP_PX, evenly};
+use super::drawn_path::{DrawnPath, STEP_PX};
 use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
 use super::overlay::Lit;
@@ -14,6 +14,7 @@ use super::paint::PaintStroke;
 use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
 use crate::document::{HandleCurve, HandleLine};
+use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
 use crate::view::{Cursor, Picking, View};

@@ -38,7 +38,6 @@ mod paint;
 mod picked_pairs;
 mod polyline;
 mod pose;
-mod pulled_curve;
 mod rim;
 mod settings;
 mod size;

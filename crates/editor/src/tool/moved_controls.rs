@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::pulled_curve::Chain;
-use crate::document::{HandleCurve, HandleId, put_curve};
+use crate::document::{FreePoint, HandleCurve, HandleId, put_curve};
+use crate::view::Camera;
 use crate::workspace::{ControlSource, Workspace, middle, put_attachment};
 
 /// The selected points of the selected handle's curve, or of the method's cage or lattice.
@@ -90,6 +90,30 @@ impl MovedControls {
         }
     }
 
+    /// Frees a single point of a curve along the direction of sight, if the curve's handle is free in depth: it has been
+    /// moved just now.
+    pub(super) fn free_depth(&self, workspace: &mut Workspace, camera: &Camera) {
+        let (ControlSource::Curve(id, _, then), [(point, _)]) = (&self.source, self.points.as_slice()) else {
+            return;
+        };
+        let handle = workspace
+            .document
+            .handle(*id)
+            .filter(|handle| handle.free_along.is_some());
+        let curve = handle.and_then(|handle| handle.line.as_ref()?.curve().cloned());
+        let Some((curve, place)) = curve.and_then(|curve| Some((curve.clone(), *curve.moved().get(*point as usize)?)))
+        else {
+            return;
+        };
+        let sight = -camera.towards_eye(then.transform_point3(place));
+        let free = FreePoint {
+            point: *point,
+            along: then.inverse().transform_vector3(sight),
+            is_chain: self.is_chain && !curve.rest().is_closed(),
+        };
+        put(workspace, *id, Some(curve.freed_at(Some(free))));
+    }
+
     /// Turns a single point of a curve about the curve's tangent there, by a turn about `axis`; false for anything else.
     pub(super) fn twist(&self, workspace: &mut Workspace, axis: DVec3, angle_rad: f64) -> bool {
         self.change_point(workspace, |curve, then, point, twist_deg, _| {
@@ -126,12 +150,7 @@ impl MovedControls {
         let mut seen: Vec<DVec3> = curve.moved().iter().map(|p| then.transform_point3(*p)).collect();
         match self.points.as_slice() {
             [(point, from)] if self.is_chain && !curve.rest().is_closed() => {
-                let chain = Chain {
-                    points: seen,
-                    pinned: curve.pinned().to_vec(),
-                    bends: curve.bends_rad(),
-                };
-                seen = chain.pulled(*point as usize, *from + way(*from));
+                seen = curve.chain(seen).pulled(*point as usize, *from + way(*from));
             }
             points => {
                 for (point, from) in points {

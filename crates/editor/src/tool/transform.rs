@@ -190,6 +190,9 @@ impl TransformDrag {
                         TransformKind::Scale => measure.scale(view) * arm - arm,
                     }
                 });
+                if measure.kind == TransformKind::Move {
+                    controls.free_depth(workspace, view.camera());
+                }
             }
         }
     }

@@ -130,7 +130,8 @@ impl Workspace {
         self.document.show(solved.from_rest, solved.from_file);
         if finality == Finality::Final {
             let handles = self.document.handles().to_vec();
-            if self.document.slide_handles(&solved.slides) {
+            let has_held = self.document.hold_free_points(&solved.point_slides);
+            if self.document.slide_handles(&solved.slides) || has_held {
                 self.history.slid(&handles, self.document.next_handle);
             }
             self.document.settle();

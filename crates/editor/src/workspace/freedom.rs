@@ -12,11 +12,11 @@ use crate::view::Camera;
 /// Frees the selected handle along the direction of sight, or holds it again where it is.
 pub(crate) fn free_or_hold_selected(workspace: &mut Workspace, camera: &Camera) {
     let Some(handle) = workspace.selected() else { return };
-    let (id, is_held) = (handle.id, handle.free_along.is_none());
+    let (id, is_held, has_no_line) = (handle.id, handle.free_along.is_none(), handle.line.is_none());
     let name = if is_held { "Free depth" } else { "Hold depth" };
     let direction = is_held.then(|| -camera.towards_eye(handle.centre()));
     workspace.change(name, |document| {
-        if is_held && document.is_displaced() {
+        if is_held && document.is_displaced() && has_no_line {
             document.unsettle();
         }
         document.change_handle(id, |handle| handle.free_along = direction);

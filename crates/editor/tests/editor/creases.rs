@@ -245,3 +245,34 @@ fn a_crease_without_width_is_refused() {
     assert!(rig.editor.view().problem.unwrap().contains("above 0"));
     assert_eq!((width(&rig), rig.fingerprint()), before);
 }
+
+#[test]
+fn an_edit_finds_creases_and_borders_that_its_rough_points_mean_and_a_document_has_the_found_ones() {
+    let rig = ridges();
+    let found = |points: &str, members: &str| {
+        let rough = format!(r#"{{"points": {points}, "snap": 0.5 {members}}}"#);
+        let handle = format!(r#"{{"name": "line", "curve": {rough}}}"#);
+        let text = format!(r#"{{"version": 1, "method": {{"name": "arap"}}, "handles": [{handle}]}}"#);
+        let again = reopened(&rig, &text);
+        let exported = again.editor.edit_file().unwrap();
+        let setup = EditFile::parse(&text).unwrap().resolve(&rig.model).unwrap();
+        let of_setup = setup.handles[0].line.as_ref().unwrap().curve().unwrap().clone();
+        assert_eq!(Some(&of_setup), exported.handles[0].curve.as_ref());
+        assert_eq!(of_setup.snap(), None);
+        assert_eq!(curve(&again), of_setup);
+        of_setup
+    };
+    let ridge = found(
+        "[[1.2, -1, 0], [1.8, 1, 0]]",
+        r#", "crease": {"width": 0.3, "sharpen": 1}"#,
+    );
+    assert_eq!(ridge.crease().unwrap().width(), 0.3);
+    for point in ridge.rest().points() {
+        assert!((point.x - 1.5).abs() < 1e-9 && point.y.abs() < 1.3, "{point}");
+    }
+    let border = found("[[0.3, 1.9, 0], [2.5, 1.8, 0]]", "");
+    for point in border.rest().points() {
+        assert!((point.y - 2.0).abs() < 1e-9, "{point}");
+    }
+    assert!(border.rest().length() > 2.0);
+}

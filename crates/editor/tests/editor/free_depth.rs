@@ -5,10 +5,12 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_editor::{
     Beginning, Command, EditError, EditFile, Event, GizmoPart, HandleId, Key, MeshReference, NamedView, Paint, Start,
-    Until, geometry_hash,
+    ToolMode, Until, geometry_hash,
 };
 use pliant_mesh::{Cancel, Progress, shapes};
 
+use crate::curve_strokes::{curve, px};
+use crate::project::{reopened, saved};
 use crate::rig::{CENTRE_PX, ITERATED, Rig, VIEWPORT_PX};
 
 /// The pull of the handle, on the screen.
@@ -204,4 +206,116 @@ fn a_free_direction_is_refused_beside_a_line_and_without_length() {
         edit(r#""select": "all", "free_along": [0, 0, 2]"#).unwrap().handles[0].free_along,
         Some(DVec3::Z * 2.0)
     );
+}
+
+/// A bar along x, seen from its near end, whose nearer half follows a curve through it.
+fn bar_along_curve(method: &str) -> Rig {
+    let edit = r#"{"version": 1, "method": {"name": "arap"},
+        "fixed": {"slab": {"axis": "x", "from": 0, "to": 0.1}},
+        "handles": [{"name": "hand", "select": {"slab": {"axis": "x", "from": 0.6, "to": 1}},
+            "curve": {"points": [[5, 0.2, 1], [6.5, 1, 1], [8, 1.8, 1]]}}]}"#;
+    let mut rig = bar();
+    rig.send(Event::Opened {
+        model: Arc::clone(&rig.model),
+        name: "bar".to_owned(),
+        beginning: Some(EditFile::parse(edit).unwrap().into()),
+    });
+    rig.choose(method);
+    rig.command(Command::View(NamedView::Right));
+    rig.command(Command::FrameAll);
+    rig.command(Command::SetTool(ToolMode::Select));
+    rig.command(Command::SelectHandle(HandleId(0)));
+    rig.drain();
+    rig
+}
+
+/// Drags the last point of the curve in the plane of the screen. Returns where it was left.
+fn drag_last_point(rig: &mut Rig, by_px: DVec2) -> DVec2 {
+    let from_px = px(rig, *curve(rig).moved().last().unwrap());
+    rig.move_to(from_px);
+    rig.press(from_px);
+    for share in [0.5, 1.0] {
+        rig.move_to(from_px + share * by_px);
+        rig.drain();
+    }
+    rig.release(from_px + by_px);
+    rig.drain();
+    from_px + by_px
+}
+
+#[test]
+fn a_curves_point_that_is_free_in_depth_stays_under_the_pointer_and_lowers_the_energy() {
+    for (method, is_chain) in [
+        ("bilaplacian", false),
+        ("arap", false),
+        ("arap", true),
+        ("shells", false),
+    ] {
+        let case = format!("{method} {is_chain}");
+        let [held, free] = [false, true].map(|is_free| {
+            let mut rig = bar_along_curve(method);
+            if is_chain {
+                rig.command(Command::ToggleChain);
+            }
+            if is_free {
+                rig.command(Command::FreeOrHoldDepth);
+            }
+            let before = curve(&rig);
+            // A straight chain reaches nothing farther.
+            let to_px = drag_last_point(&mut rig, if is_chain { DVec2::new(120.0, 220.0) } else { PULL_PX });
+            let moved = curve(&rig);
+            assert!(
+                rig.editor.document().is_settled() && rig.editor.view().problem.is_none(),
+                "{case}"
+            );
+            let apart_px = px(&rig, *moved.moved().last().unwrap()).distance(to_px);
+            assert!(apart_px < 1.0, "{case}: {apart_px}");
+            if is_chain {
+                for (one, other) in before.moved().windows(2).zip(moved.moved().windows(2)) {
+                    let apart = one[0].distance(one[1]) - other[0].distance(other[1]);
+                    assert!(apart.abs() < 1e-9, "{case}: {apart:e}");
+                }
+            }
+            rig
+        });
+        let depth = |rig: &Rig| curve(rig).moved()[2].x;
+        let energy = |rig: &Rig| {
+            let edit = rig.editor.edit_file().unwrap();
+            let setup = edit.resolve(&rig.model).unwrap();
+            let (progress, cancel) = (Progress::new(), Cancel::new());
+            let ordering = setup.method.ordering(&rig.model.topology, &progress, &cancel).unwrap();
+            let bound = setup.problem(&rig.model).bind(ordering.as_ref(), &progress, &cancel);
+            let start = Start::Shape(Arc::new(rig.editor.document().from_rest().to_vec()));
+            let mut bound = bound.unwrap();
+            let bent = start.bend(&mut bound, &setup.targets_at(1.0), Until::End, &cancel);
+            bent.unwrap().step.energy
+        };
+        let (of_held, of_free) = (energy(&held), energy(&free));
+        assert!(of_free < of_held, "{case}: {of_free} {of_held}");
+        assert!((depth(&free) - depth(&held)).abs() > 0.01, "{case}: {}", depth(&free));
+    }
+}
+
+#[test]
+fn a_drag_of_a_free_point_is_one_step_that_is_undone_and_redone_to_the_bit() {
+    for method in ["bilaplacian", "arap"] {
+        let mut rig = bar_along_curve(method);
+        rig.command(Command::FreeOrHoldDepth);
+        let mut states = vec![rig.fingerprint()];
+        for _ in 0..2 {
+            drag_last_point(&mut rig, 0.5 * PULL_PX);
+            states.push(rig.fingerprint());
+        }
+        for state in states.iter().rev().skip(1) {
+            rig.undo();
+            assert!(rig.fingerprint() == *state, "{method}");
+        }
+        for state in states.iter().skip(1) {
+            rig.redo();
+            assert!(rig.fingerprint() == *state, "{method}");
+        }
+        // The point is held where it was found, also in a project.
+        let text = saved(&rig);
+        assert_eq!(reopened(&rig, &text).fingerprint(), rig.fingerprint(), "{method}");
+    }
 }

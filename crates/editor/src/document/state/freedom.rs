@@ -1,9 +1,10 @@
-//! Handles that are free along a direction.
+//! Handles and curves' points that are free along a direction.
 
 use glam::DVec3;
 
 use super::Document;
 use crate::document::handle::{Handle, HandleId};
+use crate::document::handle_line::HandleLine;
 use crate::document::version::Aspect;
 
 impl Document {
@@ -30,5 +31,28 @@ impl Document {
         }
         self.marks.mark(&[Aspect::Handles]);
         true
+    }
+
+    /// Moves the free points of curves to where a solve has found them, and holds them there. Returns whether there was
+    /// one.
+    pub(crate) fn hold_free_points(&mut self, lengths: &[(HandleId, f64)]) -> bool {
+        let mut has_held = false;
+        for handle in &mut self.content.handles {
+            let curve = handle.line.as_ref().and_then(HandleLine::curve);
+            let Some(free) = curve.filter(|curve| curve.free_point().is_some()) else {
+                continue;
+            };
+            let length = lengths
+                .iter()
+                .find(|(id, _)| *id == handle.id)
+                .map_or(0.0, |(_, length)| *length);
+            let held = free.slid(length).unwrap_or_else(|| free.clone().freed_at(None));
+            handle.line = Some(HandleLine::Curve(held));
+            has_held = true;
+        }
+        if has_held {
+            self.marks.mark(&[Aspect::Handles]);
+        }
+        has_held
     }
 }

@@ -161,10 +161,11 @@ impl StoredHandle {
         if free_along == Some(None)
             || is_reach_refused
             || refused_weight
+            || self.curve.as_ref().is_some_and(|curve| curve.snap().is_some())
             || self.twin.is_some_and(|twin| twin.plane().is_none())
         {
             return Err(EditError::Project(format!(
-                "the handle `{}` has an invalid reach, weight, continuity, free direction or twin: save it again",
+                "the handle `{}` has an invalid reach, weight, continuity, free direction, curve or twin: save it again",
                 shortened(&self.name)
             )));
         }

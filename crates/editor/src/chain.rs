@@ -24,10 +24,10 @@ const HALVINGS: u32 = 8;
 
 /// A chain of points, the numbers of those that stay, and the bends that they may have, one for each point or none.
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
-    pub(super) points: Vec<DVec3>,
-    pub(super) pinned: Vec<u32>,
-    pub(super) bends: Vec<BendRange>,
+pub(crate) struct Chain {
+    pub(crate) points: Vec<DVec3>,
+    pub(crate) pinned: Vec<u32>,
+    pub(crate) bends: Vec<BendRange>,
 }
 
 impl Chain {
@@ -35,7 +35,7 @@ impl Chain {
     /// stay, and so does all beyond the nearest pin on either side. Without a pin before the pulled point the first point
     /// is one, and the points behind the pulled one keep their distances from it; the first point itself pulls the chain
     /// from its other end.
-    pub(super) fn pulled(&self, point: usize, target: DVec3) -> Vec<DVec3> {
+    pub(crate) fn pulled(&self, point: usize, target: DVec3) -> Vec<DVec3> {
         let pin = |number: &u32| *number as usize;
         let before = self.pinned.iter().map(pin).filter(|pin| *pin < point).max();
         let after_it = point + 1..self.points.len();
