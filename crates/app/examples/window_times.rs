@@ -15,9 +15,10 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
+use glam::DVec3;
 use pliant_app::window::{Application, Source};
 use pliant_deform::{Bilaplacian, Method};
-use pliant_editor::{Command, ObjectAction, Paint, Reach, RegionAction, Shading};
+use pliant_editor::{Command, CutPlane, KeptSide, MeshChange, ObjectAction, Paint, Reach, RegionAction, Shading};
 
 struct Session {
     harness: Harness<'static, Application>,
@@ -163,6 +164,7 @@ fn main() {
     session.settle();
     session.longest("committing and undoing");
     menus(&mut session);
+    mesh_changes(&mut session);
     latencies.sort();
     println!(
         "{{\"vertices\": {vertex_count}, \"free\": {}, \"region_and_bind_ms\": {bound_ms:.1}, \"pointer_to_buffers_ms\": {:.2}, \"p95_ms\": {:.2}}}",
@@ -170,6 +172,31 @@ fn main() {
         ms(latencies[30]),
         ms(latencies[57])
     );
+}
+
+/// Changes of the mesh, undone and redone: a cut through the middle, then the hole filled.
+fn mesh_changes(session: &mut Session) {
+    let application = session.harness.state();
+    let model = application.editor().view().model.expect("a file is open");
+    let middle = model.bounds().expect("it has vertices").centre();
+    let plane = CutPlane {
+        normal: DVec3::Y,
+        distance: middle.y,
+    };
+    let cut = Command::ChangeMesh(MeshChange::Cut(plane, KeptSide::Negative, Vec::new()));
+    for (command, name) in [(cut, "cut"), (Command::FillHoles, "fill")] {
+        let steps = [
+            (command, ""),
+            (Command::Undo, "undo of a "),
+            (Command::Redo, "redo of a "),
+        ];
+        for (command, of) in steps {
+            session.harness.state_mut().take_longest_frame();
+            session.harness.state_mut().command(command);
+            session.settle();
+            session.longest(&format!("{of}{name}"));
+        }
+    }
 }
 
 /// Every kind of command in a menu, each until all its jobs have ended.

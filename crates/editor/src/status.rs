@@ -50,10 +50,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
         RimUse::Fill => "fills it",
         RimUse::Bridge { first: None } => "begins the bridge there",
         RimUse::Bridge { first: Some(_) } => "leads the bridge there",
-        RimUse::MergePairs { first: None } => "begins a pair there",
-        RimUse::MergePairs { first: Some(_) } => "ends the pair there",
-        RimUse::Merge { first: None } => "takes it as the first of two",
-        RimUse::Merge { first: Some(_) } => "joins the first one to it, place to place",
+        RimUse::Merge { first: None } => "begins a pair there",
+        RimUse::Merge { first: Some(_) } => "ends the pair there",
     };
     match rim {
         Some(rim) => format!(
@@ -65,10 +63,8 @@ fn rim_hint(wanted: RimUse, rim: Option<&PointedRim>) -> String {
             RimUse::Fill => "Click near the rim of a hole",
             RimUse::Bridge { first: None } => "Click near the first of two rims",
             RimUse::Bridge { first: Some(_) } => "Click near the second rim",
-            RimUse::MergePairs { first: None } => "Click a place of a border",
-            RimUse::MergePairs { first: Some(_) } => "Click the place of the other border that belongs to it",
-            RimUse::Merge { first: None } => "Click a place of the first of two rims",
-            RimUse::Merge { first: Some(_) } => "Click the place of the second rim that belongs to it",
+            RimUse::Merge { first: None } => "Click a place of a border, Enter to join",
+            RimUse::Merge { first: Some(_) } => "Click the place of the other border that belongs to it",
         }
         .to_owned(),
     }

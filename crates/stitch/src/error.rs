@@ -57,7 +57,7 @@ pub enum StitchError {
     /// The surface has no other borders than the outer ones of open sheets, and none was named.
     #[error(
         "the surface has no hole: the border at vertex {vertex} is the outer border of an open sheet, which is filled \
-         only if it is named by a vertex or by its length"
+         only if it is picked in the window, or named by a vertex or by its length"
     )]
     OnlyOuterBorders {
         /// A vertex of the longest.
@@ -177,6 +177,19 @@ pub enum StitchError {
         /// The vertex.
         vertex: u32,
     },
+}
+
+impl StitchError {
+    /// The place of the obstacle: a vertex, numbered as in the file, if it has one on a shape that was made from one file.
+    pub fn place(&self) -> Option<u32> {
+        match *self {
+            Self::NotOnBorder { vertex } | Self::FaultyBorder { vertex, .. } | Self::OnlyOuterBorders { vertex } => {
+                Some(vertex)
+            }
+            Self::SameBorder { vertices } | Self::BordersTouch { vertices } => Some(vertices[0]),
+            _ => None,
+        }
+    }
 }
 
 /// The fault of a border.

@@ -162,32 +162,39 @@ fn a_filled_bent_shape_keeps_its_handle_in_the_project_and_is_saved_beside_its_o
 }
 
 #[test]
-fn a_shape_without_a_hole_is_refused_in_the_engines_words() {
-    let folder = Folder::new();
-    let file = folder.write_mesh("ball.off", &shapes::icosphere(3));
-    let refused = run([
-        OsStr::new("fill"),
-        file.as_os_str(),
-        "--output".as_ref(),
-        folder.at("out.off").as_os_str(),
-    ]);
-    let Some(mut session) = begin(&file) else { return };
-    let before = model(&session);
-    command(&mut session, Command::FillHoles);
-    let problem = session
-        .harness
-        .state()
-        .editor()
-        .view()
-        .problem
-        .unwrap_or_default()
-        .to_owned();
-    assert!(
-        !problem.is_empty() && refused.err.contains(&problem),
-        "{problem} / {}",
-        refused.err
-    );
-    assert!(Arc::ptr_eq(&model(&session), &before));
+fn a_shape_without_a_hole_is_refused_in_the_engines_words_and_the_view_goes_to_the_place() {
+    for (shape, has_place) in [(shapes::icosphere(3), false), (shapes::grid(9, 9), true)] {
+        let folder = Folder::new();
+        let file = folder.write_mesh("shape.off", &shape);
+        let refused = run([
+            OsStr::new("fill"),
+            file.as_os_str(),
+            "--output".as_ref(),
+            folder.at("out.off").as_os_str(),
+        ]);
+        let Some(mut session) = begin(&file) else { return };
+        let before = model(&session);
+        let camera = *session.harness.state().editor().view().camera;
+        command(&mut session, Command::FillHoles);
+        let view = session.harness.state().editor().view();
+        let problem = view.problem.unwrap_or_default().to_owned();
+        assert!(
+            !problem.is_empty() && refused.err.contains(&problem),
+            "{problem} / {}",
+            refused.err
+        );
+        assert!(Arc::ptr_eq(&model(&session), &before));
+        let place = problem.split_once("at vertex ").map(|(_, rest)| rest);
+        assert_eq!(place.is_some(), has_place, "{problem}");
+        let Some(place) = place else {
+            assert_eq!(*view.camera, camera);
+            continue;
+        };
+        let vertex: usize = place.split(' ').next().unwrap().parse().unwrap();
+        let seen = view.camera.project(shape.positions[vertex], view.viewport_px).unwrap();
+        let off = (seen / view.viewport_px - 0.5).abs().max_element();
+        assert!(off < 0.1 && view.camera.distance < 0.5 * camera.distance, "{off}");
+    }
 }
 
 #[test]

@@ -66,32 +66,18 @@ pub(super) const MERGE: Entry<()> = Entry {
     }),
 };
 
-/// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
-pub(super) const MERGE_PICKED: Entry<()> = Entry {
+/// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
+pub(super) const MERGE_PAIRS: Entry<()> = Entry {
     listed: &[item(
         (),
-        "Merge two borders",
-        "Joins two borders at the two places that you click next: one of the selected handle's part, one of another part.",
-        "join stitch combine append pick pair",
+        "Merge at places",
+        "Joins borders at pairs of places that you click, first on one side, then on the other; Enter ends.",
+        "join stitch combine append pick pair points correspondence",
         &[],
     )],
     scope: Scope::Document,
     unavailable: when_part_is_held,
     action: Action::Do(|context, ()| want_rim(context, RimUse::Merge { first: None })),
-};
-
-/// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
-pub(super) const MERGE_PAIRS: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Merge at pairs of places",
-        "Joins borders at pairs of places that you click in turn, three on a border or more; Enter ends.",
-        "join stitch combine append pick points correspondence",
-        &[],
-    )],
-    scope: Scope::Document,
-    unavailable: when_part_is_held,
-    action: Action::Do(|context, ()| want_rim(context, RimUse::MergePairs { first: None })),
 };
 
 /// Chooses how parts are merged.

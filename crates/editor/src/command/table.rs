@@ -379,8 +379,6 @@ commands! {
     MirrorPart(axis: usize) = held_part::MIRROR_PART;
     /// Joins the part that the selected handle holds to the others, at the nearest borders.
     Merge = held_part::MERGE;
-    /// Joins the part that the selected handle holds to another one, at the borders that the next clicks take.
-    MergePicked = held_part::MERGE_PICKED;
     /// Joins the part that the selected handle holds to the others, at pairs of places that the next clicks take.
     MergePairs = held_part::MERGE_PAIRS;
     /// Chooses how parts are merged; the reach is clamped to [`REACH_RANGE`](crate::REACH_RANGE).

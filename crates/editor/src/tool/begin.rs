@@ -28,7 +28,7 @@ use crate::document::Paint;
 use crate::input::{Button, Pointer};
 use crate::stitching::MeshChange;
 use crate::view::{GizmoPart, Pick};
-use crate::workspace::{merge_held, set_pivot, stitch};
+use crate::workspace::{set_pivot, stitch};
 
 /// The beginning of a gesture.
 type Begun = Option<Box<dyn Gesture>>;
@@ -180,15 +180,7 @@ fn take_rim(context: &mut Context<'_>, pointer: Pointer) -> Begun {
             context.settings.wants_rim = Some(RimUse::Bridge { first });
         }
         RimUse::Bridge { first: Some(first) } => stitch(context.workspace, MeshChange::Bridge([first, rim.vertex])),
-        RimUse::MergePairs { first } => context.settings.pick_for_pair(first, rim.vertex),
-        RimUse::Merge { first: None } => {
-            let first = Some(rim.vertex);
-            context.settings.wants_rim = Some(RimUse::Merge { first });
-        }
-        RimUse::Merge { first: Some(first) } => {
-            let settings = context.settings.merge.clone();
-            merge_held(context.workspace, &[[first, rim.vertex]], settings);
-        }
+        RimUse::Merge { first } => context.settings.pick_for_pair(first, rim.vertex),
     }
     None
 }

@@ -18,13 +18,8 @@ pub enum RimUse {
         /// A vertex of the first one, once that was taken.
         first: Option<SurfaceVertex>,
     },
-    /// It is joined with one of another part, at the vertices that are clicked.
-    Merge {
-        /// The vertex of the first one, once that was taken.
-        first: Option<SurfaceVertex>,
-    },
     /// It has a place of a pair, of which several are picked before borders are joined there.
-    MergePairs {
+    Merge {
         /// The first place of the present pair, once that was taken.
         first: Option<SurfaceVertex>,
     },
@@ -35,7 +30,7 @@ impl RimUse {
     pub fn first(self) -> Option<SurfaceVertex> {
         match self {
             Self::Fill => None,
-            Self::Bridge { first } | Self::Merge { first } | Self::MergePairs { first } => first,
+            Self::Bridge { first } | Self::Merge { first } => first,
         }
     }
 }
@@ -112,9 +107,7 @@ impl Rims {
         let held = held_parts(workspace);
         let is_held = |vertex: SurfaceVertex| held.contains(&model.topology.component(vertex));
         let may_follow = |rim: &Vec<SurfaceVertex>| match wanted {
-            RimUse::Merge { .. } | RimUse::MergePairs { .. } => {
-                rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first))
-            }
+            RimUse::Merge { .. } => rim.first().is_some_and(|vertex| is_held(*vertex) != is_held(first)),
             RimUse::Bridge { .. } | RimUse::Fill => !rim.contains(&first),
         };
         self.loops.iter().map(may_follow).collect()

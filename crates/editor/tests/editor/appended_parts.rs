@@ -125,13 +125,16 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
     rig.command(Command::FrameAll);
     let of_part = |held: bool| rims.iter().find(|rim| part.contains(&rim[0]) == held).unwrap()[0];
     for order in [[true, false], [false, true]] {
-        rig.command(Command::MergePicked);
+        rig.command(Command::MergePairs);
         for held in order {
             let at = px(&rig, of_part(held));
             rig.press(at);
             rig.release(at);
         }
+        assert!(rig.editor.take_stitch().is_none(), "more pairs may follow");
+        rig.key(Key::Enter);
         let change = asked(&mut rig);
+        rig.key(Key::Escape);
         let [[a, b]] = change.pairs[..] else {
             panic!("{:?}", change.pairs)
         };
@@ -186,7 +189,7 @@ fn a_merge_asks_for_the_part_of_the_selected_handle_and_sorts_the_picked_places(
     assert_eq!(numbers(&rig), "1122", "a refused merge leaves the places");
     rig.key(Key::Escape);
     assert!(rig.editor.view().wants_rim.is_none() && numbers(&rig).is_empty());
-    rig.command(Command::MergePicked);
+    rig.command(Command::MergePairs);
     for _ in 0..2 {
         let at = px(&rig, of_part(true));
         rig.press(at);

@@ -61,7 +61,7 @@ impl std::fmt::Display for Unfilled {
             Reason::Outer => write!(
                 f,
                 "{borders} {stay} open: {each} is the outer border of an open sheet, which is filled only if it is \
-                 named by a vertex or by its length"
+                 picked in the window, or named by a vertex or by its length"
             ),
         }
     }

@@ -9,7 +9,7 @@ use pliant_editor::{Command, Event, MeshChange, Revision};
 use crate::window::application::Application;
 use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
-use crate::window::threads::message::Stitched;
+use crate::window::threads::message::{Refusal, Stitched};
 
 impl Application {
     /// Puts another file beside the present shape, off the window's thread.
@@ -30,7 +30,7 @@ impl Application {
     }
 
     /// Takes the end of a change of the mesh.
-    pub(in crate::window) fn take_stitched(&mut self, stamp: Revision, result: Result<Box<Stitched>, String>) {
+    pub(in crate::window) fn take_stitched(&mut self, stamp: Revision, result: Result<Box<Stitched>, Refusal>) {
         if !self.session.has_stitched(stamp) {
             return;
         }
@@ -48,7 +48,12 @@ impl Application {
         let is_appended = self.session.to_append.take().is_some();
         let (mesh, notes, left_open) = match result {
             Ok((mesh, notes, left_open)) => (Ok(Box::new(mesh)), notes, left_open),
-            Err(sentence) => (Err(sentence), Vec::new(), Vec::new()),
+            Err(Refusal { sentence, place }) => {
+                if let Some(vertex) = place {
+                    self.editor.handle(Event::Command(Command::FrameFileVertex(vertex)));
+                }
+                (Err(sentence), Vec::new(), Vec::new())
+            }
         };
         self.editor.handle(Event::Stitched(mesh));
         let mut notes = notes.into_iter();

@@ -215,7 +215,7 @@ fn mesh_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
     let groups: [&[Command]; 2] = [
         &[0, 1, 2].map(Command::MirrorPart),
-        &[Command::Merge, Command::MergePicked, Command::MergePairs],
+        &[Command::Merge, Command::MergePairs],
     ];
     command_groups(ui, editor, &groups, commands);
     if ui.button(FileCommand::MergeOptions.name()).clicked() {

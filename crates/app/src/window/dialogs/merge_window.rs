@@ -30,7 +30,7 @@ impl MergeWindow {
             .show(context, |ui| {
                 choose(ui, &mut settings);
                 ui.horizontal(|ui| {
-                    for command in [Command::Merge, Command::MergePicked, Command::MergePairs] {
+                    for command in [Command::Merge, Command::MergePairs] {
                         if command_button(ui, editor, &command) {
                             asked = Some(command);
                         }

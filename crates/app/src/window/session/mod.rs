@@ -21,7 +21,7 @@ pub use crate::window::session::open_file::OpenFile;
 pub use crate::window::session::opening::Source;
 use crate::window::session::opening::{absolute, open};
 use crate::window::session::shapes::OtherShapes;
-use crate::window::threads::message::{Message, ModelToShow};
+use crate::window::threads::message::{Message, ModelToShow, Refusal};
 use crate::window::threads::workers::Workers;
 use crate::window::viewport::gpu::Gpu;
 use pliant_engine::files::{KnownFiles, is_same};
@@ -76,7 +76,7 @@ impl Session {
                 let made = stitching::stitch(&request, &loaded, second.as_deref(), &gpu, &watch);
                 Message::Stitched(stamp, made)
             },
-            move |sentence| Message::Stitched(stamp, Err(sentence)),
+            move |sentence| Message::Stitched(stamp, Err(Refusal { sentence, place: None })),
         );
     }
 

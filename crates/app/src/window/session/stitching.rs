@@ -12,24 +12,30 @@ use pliant_picture::drawing::Drawing;
 use crate::window::files::in_file::InFile;
 use crate::window::files::other_shape::OtherShape;
 use crate::window::files::rest_mesh::{MeshSource, RestMesh};
-use crate::window::threads::message::Stitched;
+use crate::window::threads::message::{Refusal, Stitched};
 use crate::window::viewport::gpu::Gpu;
 
 /// Makes the new shape of the open file. `second` is the file that is appended.
 ///
 /// # Errors
-/// A sentence about the refusal.
+/// The refusal, with its place if it has one.
 pub fn stitch(
     request: &StitchRequest,
     loaded: &Loaded,
     second: Option<&Path>,
     gpu: &Gpu,
     watch: &Watch,
-) -> Result<Box<Stitched>, String> {
+) -> Result<Box<Stitched>, Refusal> {
     let made = make(request, loaded, second, gpu, watch);
-    made.map_err(|error| match error {
-        EngineError::Interrupted => format!("{} was stopped: the surface is unchanged.", request.change.name()),
-        error => error.to_string(),
+    made.map_err(|error| Refusal {
+        place: match &error {
+            EngineError::Stitch { source, .. } => source.place(),
+            _ => None,
+        },
+        sentence: match error {
+            EngineError::Interrupted => format!("{} was stopped: the surface is unchanged.", request.change.name()),
+            error => error.to_string(),
+        },
     })
 }
 

@@ -33,7 +33,7 @@ pub enum Message {
     /// A file was opened, or the reason why not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
     /// The open file's triangles were changed, or the reason why not.
-    Stitched(Revision, Result<Box<Stitched>, String>),
+    Stitched(Revision, Result<Box<Stitched>, Refusal>),
     /// A file was written, or the reason why not.
     Written(Revision, Result<Written, Unwritten>),
     /// The place where the original of the file at this path is or will be kept, or the reason why it is unknown.
@@ -145,6 +145,14 @@ pub struct Stitched {
     pub notes: Vec<String>,
     /// A vertex, numbered as in the file, of each border that a note says stays open.
     pub left_open: Vec<u32>,
+}
+
+/// A change of the mesh that could not be made.
+pub struct Refusal {
+    /// The reason, in a sentence.
+    pub sentence: String,
+    /// The place of the obstacle: a vertex, numbered as in the file.
+    pub place: Option<u32>,
 }
 
 /// The purpose of choosing a path.
