@@ -60,26 +60,30 @@ pub(crate) fn details(
     Ok(patch.free.iter().map(way).collect())
 }
 
-/// The vertices within `width` of some others along the surface, and two rings around them, ascending.
-pub(crate) fn beside(
+/// The vertices within each of these widths of some others along the surface, and two rings around them, ascending.
+pub(crate) fn beside<const N: usize>(
     surface: &Surface,
     topology: &Topology,
     position: impl Fn(SurfaceVertex) -> DVec3,
     of: impl Iterator<Item = SurfaceVertex>,
-    width: f64,
-) -> Vec<SurfaceVertex> {
+    widths: [f64; N],
+) -> [Vec<SurfaceVertex>; N] {
     let seeds: Vec<(SurfaceVertex, f64)> = of.map(|vertex| (vertex, 0.0)).collect();
     let mut search = DistanceSearch::default();
-    let reached = search.within(&surface.triangles, topology, position, &seeds, width);
-    let mut vertices: Vec<SurfaceVertex> = reached.iter().map(|(vertex, _)| *vertex).collect();
-    for _ in 0..RINGS {
-        let around = |v: &SurfaceVertex| topology.neighbours(*v).iter().copied();
-        let more: Vec<SurfaceVertex> = vertices.iter().flat_map(around).collect();
-        vertices.extend(more);
-        vertices.sort_unstable();
-        vertices.dedup();
-    }
-    vertices
+    let largest = widths.into_iter().fold(0.0, f64::max);
+    let reached = search.within(&surface.triangles, topology, position, &seeds, largest);
+    widths.map(|width| {
+        let near = reached.iter().filter(|(_, distance)| *distance <= width);
+        let mut vertices: Vec<SurfaceVertex> = near.map(|(vertex, _)| *vertex).collect();
+        for _ in 0..RINGS {
+            let around = |v: &SurfaceVertex| topology.neighbours(*v).iter().copied();
+            let more: Vec<SurfaceVertex> = vertices.iter().flat_map(around).collect();
+            vertices.extend(more);
+            vertices.sort_unstable();
+            vertices.dedup();
+        }
+        vertices
+    })
 }
 
 /// The vertices under a curve along the surface, from the one of `start` that is nearest to its beginning on: each is the

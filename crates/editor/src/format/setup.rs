@@ -275,7 +275,8 @@ impl HandleEntry {
                     Some(crease) => {
                         let position = |v: SurfaceVertex| surface.positions[v.index()];
                         let under = members.into_iter();
-                        crease::beside(surface, &model.topology, position, under, crease.width())
+                        let [beside] = crease::beside(surface, &model.topology, position, under, [crease.width()]);
+                        beside
                     }
                     None => members.into_iter().collect(),
                 })

@@ -1,4 +1,5 @@
 //! A stroke that draws a curve: when the button goes up, the surface under or around it becomes a handle that follows it.
+//! A job finds the limb around a spine.
 
 use std::collections::BTreeSet;
 
@@ -33,15 +34,24 @@ pub(crate) struct CurveStroke {
     path: DrawnPath,
     /// The stroke that finally paints the vertices.
     stroke: StrokeGesture<PaintStroke>,
+    /// The drawn spine, while a job searches for the limb around it.
+    spine: Option<Drawn>,
 }
 
 /// The result of a stroke.
+#[derive(Debug)]
 struct Drawn {
     curve: HandleCurve,
-    /// The vertices that follow it.
-    vertices: Vec<SurfaceVertex>,
-    /// The length within which the surface beside them follows.
+    /// The length within which the surface beside what follows the curve follows that.
     reach: f64,
+}
+
+/// What follows a curve.
+enum Around {
+    /// These vertices.
+    Under(Vec<SurfaceVertex>),
+    /// The limb of this half thickness around it, which is connected with these vertices.
+    Limb(f64, Vec<SurfaceVertex>),
 }
 
 impl CurveStroke {
@@ -52,6 +62,7 @@ impl CurveStroke {
             shape,
             path: DrawnPath::begin(pointer, STEP_PX),
             stroke,
+            spine: None,
         })
     }
 
@@ -70,30 +81,55 @@ impl CurveStroke {
         }
     }
 
-    /// The curve with its surroundings; `None` if the stroke is too short for one.
-    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<Drawn> {
+    /// The curve with what follows it; `None` if the stroke is too short for one.
+    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<(Drawn, Around)> {
         let picking = workspace.picking(view)?;
         let mut samples = self.samples(&picking);
         let is_closed = self.shape == StrokeShape::Curve && self.path.is_closed();
-        let count = match self.shape {
-            StrokeShape::Spine => SPINE_POINTS,
-            _ => self.path.point_count(),
-        };
-        let half = match self.shape {
-            StrokeShape::Spine => to_the_middle(&mut samples, &picking),
-            _ => 0.0,
+        let (count, half) = match self.shape {
+            StrokeShape::Spine => (SPINE_POINTS, to_the_middle(&mut samples, &picking)),
+            _ => (self.path.point_count(), 0.0),
         };
         let places: Vec<DVec3> = samples.iter().map(|sample| sample.point).collect();
         let points = evenly(&places, count, is_closed);
         let curve = HandleCurve::at_rest_through(points, is_closed).ok()?;
-        let (vertices, reach) = match self.shape {
-            StrokeShape::Spine => (around(curve.rest(), half, &samples, &picking), SPINE_REACH * half),
-            _ => (
-                under(curve.rest(), &samples, &picking),
-                CURVE_REACH * curve.rest().length(),
-            ),
+        if self.shape == StrokeShape::Spine {
+            let seen = samples.iter().map(|sample| sample.pick.vertex).collect();
+            let reach = SPINE_REACH * half;
+            return Some((Drawn { curve, reach }, Around::Limb(half, seen)));
+        }
+        let under = under(curve.rest(), &samples, &picking);
+        let reach = CURVE_REACH * curve.rest().length();
+        (!under.is_empty()).then_some((Drawn { curve, reach }, Around::Under(under)))
+    }
+
+    /// Begins the search for the limb around a spine.
+    fn look_around(&mut self, workspace: &mut Workspace, drawn: Drawn, half: f64, seen: Vec<SurfaceVertex>) {
+        let Some(model) = workspace.model().cloned() else {
+            return;
         };
-        (!vertices.is_empty()).then_some(Drawn { curve, vertices, reach })
+        let (shape, curve) = (workspace.document.from_file().clone(), drawn.curve.clone());
+        let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
+            cancel.check()?;
+            Ok(around(curve.rest(), half, &seen, &model, &shape))
+        });
+        workspace.jobs.ask(|slots| &mut slots.enclose, work);
+        self.spine = Some(drawn);
+    }
+
+    /// Makes a handle of these vertices that follows the curve.
+    fn finish(&mut self, context: &mut Context<'_>, drawn: Drawn, vertices: Vec<SurfaceVertex>) -> Next {
+        self.stroke.finish_with(context.workspace, |stroke, workspace| {
+            stroke.take_with_line(workspace, vertices, HandleLine::Curve(drawn.curve), drawn.reach);
+        });
+        Next::End
+    }
+
+    fn refuse(&mut self, context: &mut Context<'_>) -> Next {
+        self.abort(context);
+        let why = "That is too short for a curve: draw a longer one along the surface.";
+        context.workspace.refuse(why);
+        Next::End
     }
 }
 
@@ -125,6 +161,7 @@ impl Gesture for CurveStroke {
 
     fn status(&self, _: &Workspace, _: &View) -> Option<String> {
         Some(match self.shape {
+            StrokeShape::Spine if self.spine.is_some() => "Finding the limb around the spine: Esc to cancel".to_owned(),
             StrokeShape::Spine => {
                 "Drawing a spine from the body to the tip: release at the end, Esc to cancel".to_owned()
             }
@@ -137,30 +174,41 @@ impl Gesture for CurveStroke {
         self.path.as_outline_px()
     }
 
+    fn is_looking(&self) -> bool {
+        self.spine.is_some()
+    }
+
     fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        self.path.follow(pointer);
+        if !self.is_looking() {
+            self.path.follow(pointer);
+        }
         Next::Stay
     }
 
     fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary {
+        if button != Button::Primary || self.is_looking() {
             return Next::Stay;
         }
         self.moved(context, pointer);
-        let Some(drawn) = self.drawn(context.workspace, context.view) else {
-            self.stroke.abort(context);
-            context
-                .workspace
-                .refuse("That is too short for a curve: draw a longer one along the surface.");
-            return Next::End;
-        };
-        self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, drawn.vertices, HandleLine::Curve(drawn.curve), drawn.reach);
-        });
-        Next::End
+        match self.drawn(context.workspace, context.view) {
+            Some((drawn, Around::Under(vertices))) => self.finish(context, drawn, vertices),
+            Some((drawn, Around::Limb(half, seen))) => {
+                self.look_around(context.workspace, drawn, half, seen);
+                Next::Stay
+            }
+            None => self.refuse(context),
+        }
+    }
+
+    fn found(&mut self, context: &mut Context<'_>, limb: Vec<SurfaceVertex>) -> Next {
+        match self.spine.take() {
+            Some(drawn) if !limb.is_empty() => self.finish(context, drawn, limb),
+            _ => self.refuse(context),
+        }
     }
 
     fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
         self.stroke.abort(context);
     }
 }

@@ -4,7 +4,7 @@
 //! find the limb's walls, in depth and beside the stroke, and the sample moves half way between them.
 
 use glam::DVec3;
-use pliant_mesh::{Curve, SurfaceVertex};
+use pliant_mesh::{Curve, Model, SurfaceVertex};
 
 use crate::view::{Pick, Picking, Ray};
 
@@ -133,23 +133,30 @@ fn between_walls(samples: &mut [Sample], directions: &[DVec3], picking: &Picking
     0.5 * usual
 }
 
-/// The vertices near a curve inside a limb of this half thickness that are connected with the samples.
-pub(super) fn around(curve: &Curve, half: f64, samples: &[Sample], picking: &Picking<'_>) -> Vec<SurfaceVertex> {
+/// The vertices near a curve inside a limb of this half thickness that are connected with the `seen` ones, on the model's
+/// surface after these displacements.
+pub(super) fn around(
+    curve: &Curve,
+    half: f64,
+    seen: &[SurfaceVertex],
+    model: &Model,
+    displacements: &[DVec3],
+) -> Vec<SurfaceVertex> {
     const SPANS: usize = 32;
     let limit = GIRTH * half;
     let at = |span: usize| curve.position(curve.length() * span as f64 / SPANS as f64);
     let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
     let is_near = |vertex: SurfaceVertex| {
-        let point = picking.position(vertex);
+        let point = model.surface.positions[vertex.index()] + displacements[vertex.index()];
         line.windows(2).any(|ends| distance_to(point, ends) <= limit)
     };
-    let mut is_seen = vec![false; picking.model.surface.positions.len()];
+    let mut is_seen = vec![false; model.surface.positions.len()];
     let mut found: Vec<SurfaceVertex> = Vec::new();
-    let mut stack: Vec<SurfaceVertex> = samples.iter().map(|sample| sample.pick.vertex).collect();
+    let mut stack: Vec<SurfaceVertex> = seen.to_vec();
     while let Some(vertex) = stack.pop() {
         if !std::mem::replace(&mut is_seen[vertex.index()], true) && is_near(vertex) {
             found.push(vertex);
-            stack.extend(picking.model.topology.neighbours(vertex));
+            stack.extend(model.topology.neighbours(vertex));
         }
     }
     found.sort_unstable();

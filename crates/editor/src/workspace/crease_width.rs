@@ -11,6 +11,9 @@ use super::state::Workspace;
 use crate::crease;
 use crate::document::{Crease, Document, HandleCurve, HandleId, HandleLine, Paint, Reach, put_curve};
 
+/// The line along which a crease was found is not quite its curve, so a handle has vertices up to this many widths away.
+const SLACK: f64 = 1.3;
+
 /// Makes the crease along the curve wider or narrower, and its twin's: vertices that come beside it are the handle's, those
 /// that are no longer beside it are bare. What was painted by hand stays. While a widget is dragged, all follows from the
 /// state before, so that a way there and back changes nothing.
@@ -75,19 +78,18 @@ fn beside(
     model: &Model,
     handle: HandleId,
     curve: &HandleCurve,
-    widths: [f64; 2],
+    [old, new]: [f64; 2],
 ) -> impl Iterator<Item = (SurfaceVertex, Paint)> + use<> {
     let position =
         |vertex: SurfaceVertex| -> DVec3 { model.surface.positions[vertex.index()] + document.rest()[vertex.index()] };
     let under = crease::under(&model.topology, position, &members(document, handle), curve.rest());
-    let [old, new] = widths.map(|width| -> BTreeSet<SurfaceVertex> {
-        let under = under.iter().copied();
-        crease::beside(&model.surface, &model.topology, position, under, width)
-            .into_iter()
-            .collect()
-    });
+    let widths = [old, SLACK * old, new];
+    let found = crease::beside(&model.surface, &model.topology, position, under.into_iter(), widths);
+    let is_narrower = new < old;
+    let [old, about_old, new] = found.map(BTreeSet::from_iter);
+    let former = if is_narrower { about_old } else { old.clone() };
     let paint = document.paint();
-    let left = old
+    let left = former
         .difference(&new)
         .filter(|vertex| paint[vertex.index()] == Paint::Handle(handle));
     let may_get = |vertex: &&SurfaceVertex| matches!(paint[vertex.index()], Paint::Bare | Paint::Free);

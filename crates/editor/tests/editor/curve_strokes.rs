@@ -3,7 +3,7 @@
 
 use crate::rig::{Fingerprint, Rig, VIEWPORT_PX};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, EditFile, HandleCurve, JobKind, NamedView, StrokeShape, Symmetry, ToolMode};
+use pliant_editor::{Command, EditFile, HandleCurve, JobKind, Key, NamedView, StrokeShape, Symmetry, ToolMode};
 use pliant_mesh::shapes;
 
 /// A tube along the view's horizontal axis that bends by ARAP.
@@ -201,6 +201,24 @@ fn a_limited_joint_stops_a_pull_and_limits_are_undone_kept_and_refused_in_words(
         rig.undo();
     }
     assert!(curve(&rig) == at_rest);
+}
+
+#[test]
+fn a_spine_is_cancelled_while_its_limb_is_searched_for() {
+    let mut rig = tube();
+    let before = rig.fingerprint();
+    rig.command(Command::SetTool(ToolMode::PaintHandle));
+    rig.command(Command::SetStrokeShape(StrokeShape::Spine));
+    let middle = rig.model.bounds().unwrap().centre();
+    let way: Vec<DVec2> = (0..=8)
+        .map(|step| px(&rig, middle + DVec3::X * 0.5 * f64::from(step)))
+        .collect();
+    rig.swipe(&way);
+    assert_eq!(rig.jobs.waiting(), [JobKind::Enclose]);
+    rig.key(Key::Escape);
+    rig.drain();
+    assert!(rig.editor.document().handles().is_empty());
+    assert_eq!(rig.fingerprint(), before);
 }
 
 #[test]
