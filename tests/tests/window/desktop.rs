@@ -10,7 +10,6 @@
 use std::fs;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
 
 use crate::window_rig::Session;
 use egui::accesskit::Role;
@@ -24,16 +23,6 @@ use pliant_tests::Folder;
 
 fn ball(folder: &Folder) -> PathBuf {
     folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3))
-}
-
-#[track_caller]
-fn wait_until(session: &mut Session, is_done: impl Fn(&Session) -> bool) {
-    let start = Instant::now();
-    while !is_done(session) {
-        assert!(start.elapsed() < Duration::from_secs(60), "it never came about");
-        std::thread::sleep(Duration::from_millis(10));
-        session.harness.step();
-    }
 }
 
 #[track_caller]
@@ -87,7 +76,7 @@ fn the_desktop_shows_the_folder_the_manual_and_the_place_for_faults() {
         }
     }));
     let last = |session: &mut Session| {
-        wait_until(session, |_| !shown.lock().unwrap().is_empty());
+        session.wait_until(|_| !shown.lock().unwrap().is_empty());
         shown.lock().unwrap().pop()
     };
     choose(&mut session, "File", "Show in folder");
@@ -101,7 +90,7 @@ fn the_desktop_shows_the_folder_the_manual_and_the_place_for_faults() {
 
     choose(&mut session, "Help", "Manual");
     assert!(matches!(last(&mut session), Some(Elsewhere::Page(address)) if address.contains("manual")));
-    wait_until(&mut session, |session| has(session, "no browser opens"));
+    session.wait_until(|session| has(session, "no browser opens"));
     choose(&mut session, "Help", "About Pliant");
     for fact in [env!("CARGO_PKG_VERSION"), "MIT OR Apache-2.0", "/issues"] {
         assert!(has(&session, fact), "{fact}");
@@ -146,7 +135,7 @@ fn a_recent_file_has_a_small_picture_from_its_opening_on() {
         let is_picture = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "png");
         paths.filter(is_picture).collect::<Vec<_>>()
     };
-    wait_until(&mut session, |_| !pictures(&folder).is_empty());
+    session.wait_until(|_| !pictures(&folder).is_empty());
     let place = pictures(&folder).remove(0);
     let picture = image::open(&place).unwrap().into_rgba8();
     assert_eq!(picture.dimensions(), (192, 144));
@@ -159,7 +148,7 @@ fn a_recent_file_has_a_small_picture_from_its_opening_on() {
         session.harness.state_mut().open(other);
         session.settle();
     }
-    wait_until(&mut session, |_| !place.exists() && pictures(&folder).len() <= 10);
+    session.wait_until(|_| !place.exists() && pictures(&folder).len() <= 10);
     drop(session);
     let Some(mut session) = Session::begin_in(Source::Sample, places) else {
         return;

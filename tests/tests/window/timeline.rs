@@ -115,7 +115,8 @@ fn ghosts_are_drawn_and_it_plays_until_it_is_paused() {
     let Some(mut session) = keyed() else { return };
     command(&mut session, Command::GoToTime(0.25));
     command(&mut session, Command::ToggleSkins);
-    assert_eq!(session.harness.state().editor().view().skins.len(), 2);
+    // Their jobs begin after the solve has ended.
+    session.wait_until(|session| session.harness.state().editor().view().skins.len() == 2);
     session.key(Key::P, Modifiers::NONE);
     let mut seen = Vec::new();
     for _ in 0..400 {

@@ -67,6 +67,21 @@ impl Session {
         self.harness.step();
     }
 
+    /// Lets frames pass until `is_done` holds, such as for work that begins only after other work has ended.
+    #[track_caller]
+    pub fn wait_until(&mut self, is_done: impl Fn(&Self) -> bool) {
+        let start = Instant::now();
+        while !is_done(self) {
+            assert!(
+                start.elapsed() < Duration::from_secs(60),
+                "it never came about: {}",
+                self.status()
+            );
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.step();
+        }
+    }
+
     pub fn status(&self) -> String {
         self.harness.state().editor().view().status
     }
