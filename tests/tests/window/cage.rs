@@ -8,7 +8,6 @@
     reason = "tests fail by panicking, say what they skip, and do not need every verb of the rig"
 )]
 
-use std::time::{Duration, Instant};
 
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, Pos2, pos2, vec2};
@@ -35,18 +34,6 @@ fn boxed(middle: DVec3, half: DVec3) -> Drawn {
         (0..8).map(|k| middle + corner(k) * half).collect(),
         triangles.map(|t| t.map(DrawnVertex)).collect(),
     )
-}
-
-/// Lets frames pass until `until` holds.
-#[track_caller]
-fn wait(session: &mut Session, until: impl Fn(&Session) -> bool) {
-    let start = Instant::now();
-    while !until(session) {
-        assert!(start.elapsed() < Duration::from_secs(120), "still {}", session.status());
-        std::thread::sleep(Duration::from_millis(5));
-        session.harness.step();
-    }
-    session.settle();
 }
 
 /// The place in the window of a control point without surface under it.
@@ -91,7 +78,7 @@ fn a_cage_is_shown_dragged_undone_loaded_and_saved() {
     session.harness.run_steps(2);
     session.palette("method: cage");
     session.key(Key::Enter, Modifiers::NONE);
-    wait(&mut session, |session| count(session) > 8);
+    session.settle_when(|session| count(session) > 8);
     session.page("Method");
     session.harness.get_by_label_contains("made by the method");
     session.harness.state_mut().command(Command::SetTool(ToolMode::Select));
@@ -118,21 +105,19 @@ fn a_cage_is_shown_dragged_undone_loaded_and_saved() {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\n",
     );
     session.harness.state_mut().load_cage(torn);
-    wait(&mut session, |session| {
-        session.harness.state().editor().view().problem.is_some()
-    });
+    session.settle_when(|session| session.harness.state().editor().view().problem.is_some());
     let problem = session.harness.state().editor().view().problem.unwrap().to_owned();
     assert!(
         problem.contains("The cage is open at the edge") || problem.contains("face different sides"),
         "{problem}"
     );
     session.harness.state_mut().load_cage(cage);
-    wait(&mut session, |session| count(session) == 8);
+    session.settle_when(|session| count(session) == 8);
     session
         .harness
         .get_by_label_contains("Cage: 8 points, 0 selected, your own");
     session.harness.state_mut().load_cage(small);
-    wait(&mut session, |session| {
+    session.settle_when(|session| {
         let editor = session.harness.state().editor();
         editor
             .warnings()
@@ -140,7 +125,7 @@ fn a_cage_is_shown_dragged_undone_loaded_and_saved() {
             .any(|warning| warning.contains("outside the cage"))
     });
     session.harness.state_mut().load_cage(folder.at("none.off"));
-    wait(&mut session, |session| {
+    session.settle_when(|session| {
         session
             .harness
             .state()

@@ -8,7 +8,6 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use crate::window_rig::Session;
 use egui::accesskit::Role;
@@ -56,23 +55,6 @@ fn examples(session: &Session) -> Option<&Examples> {
 fn names(session: &Session) -> Vec<String> {
     let shapes = examples(session).map_or(&[][..], |examples| &examples.shapes);
     shapes.iter().map(|shape| shape.name.clone()).collect()
-}
-
-/// Lets frames pass until `until` holds.
-#[track_caller]
-fn wait(session: &mut Session, until: impl Fn(&Session) -> bool) {
-    let start = Instant::now();
-    while !until(session) {
-        let line = session.harness.state().headline();
-        assert!(
-            start.elapsed() < Duration::from_secs(120),
-            "still {}, {line:?}",
-            session.status()
-        );
-        std::thread::sleep(Duration::from_millis(5));
-        session.harness.step();
-    }
-    session.settle();
 }
 
 fn says(session: &Session, words: &[&str]) -> bool {
@@ -136,11 +118,11 @@ fn a_file_is_taken_as_an_example_weighed_undone_and_saved() {
         (folder.at("none.off"), ["none.off", "", "", ""]),
     ] {
         session.harness.state_mut().load_example(path);
-        wait(&mut session, |session| says(session, &words));
+        session.settle_when(|session| says(session, &words));
         assert!(examples(&session).is_none());
     }
     session.harness.state_mut().load_example(pose.clone());
-    wait(&mut session, |session| examples(session).is_some());
+    session.settle_when(|session| examples(session).is_some());
     assert_eq!(names(&session), ["pose"]);
     assert!(session.shape().iter().all(|d| *d == DVec3::ZERO));
 
@@ -217,7 +199,7 @@ fn morph_targets_of_the_file_are_taken_from_a_list() {
     for expected in [vec!["Bow"], vec!["Bow", "Bow 1"]] {
         click(&mut session, "Add a morph target");
         click(&mut session, "Bow");
-        wait(&mut session, |session| names(session).len() == expected.len());
+        session.settle_when(|session| names(session).len() == expected.len());
         assert_eq!(names(&session), expected);
     }
     session.key(Key::Z, Modifiers::COMMAND);
@@ -279,7 +261,7 @@ fn the_faces_wrinkles_come_from_its_morph_targets_and_go_by_the_slider() {
     assert!(largest_distance(&session.shape(), &plain) < 1e-5 * height);
     click(&mut session, "Add a morph target");
     click(&mut session, "Brows raised");
-    wait(&mut session, |session| !names(session).is_empty());
+    session.settle_when(|session| !names(session).is_empty());
     assert_eq!(names(&session), ["Brows raised"]);
     let whole = session.shape();
     assert!(largest_distance(&whole, &plain) > 1e-4 * height);

@@ -10,7 +10,6 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, Rect, vec2};
@@ -26,17 +25,6 @@ fn places(folder: &Folder) -> AppDirectories {
         settings: Some(folder.at("settings.json")),
         recovery: Some(folder.at("recovery")),
         pictures: Some(folder.at("pictures")),
-    }
-}
-
-/// Runs frames until `is_done`.
-#[track_caller]
-fn wait_until(session: &mut Session, is_done: impl Fn(&mut Session) -> bool) {
-    let start = Instant::now();
-    while !is_done(session) {
-        assert!(start.elapsed() < Duration::from_secs(60), "it never came about");
-        std::thread::sleep(Duration::from_millis(10));
-        session.harness.step();
     }
 }
 
@@ -155,7 +143,7 @@ fn a_maximised_window_is_remembered() {
         let input = session.harness.input_mut();
         let window = input.viewports.entry(egui::ViewportId::ROOT).or_default();
         window.maximized = Some(is_maximised);
-        wait_until(&mut session, |_| remembered() == Some(is_maximised));
+        session.wait_until(|_| remembered() == Some(is_maximised));
     }
 }
 
@@ -214,7 +202,7 @@ fn a_recovery_names_its_file() {
             .map(|entry| entry.path())
             .find(|path| path.extension().is_some_and(|extension| extension == "pliant"))
     };
-    wait_until(&mut session, |_| kept().is_some());
+    session.wait_until(|_| kept().is_some());
     // It is like the leftovers of a killed session: nothing holds its lock.
     fs::copy(kept().unwrap(), folder.at("recovery/session-0-0.pliant")).unwrap();
     drop(session);

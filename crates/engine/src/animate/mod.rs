@@ -18,7 +18,7 @@ use self::kind::Kind;
 pub use self::kind::animation_path;
 pub(crate) use self::kind::check_output;
 pub use self::report::{AnimationReport, MorphReport};
-pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices, places};
+pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices, checked_places};
 use crate::EngineError;
 use crate::apply::{Prepared, check_bends, prepare};
 use crate::edit_job::{EditJob, with_keys};
@@ -154,7 +154,7 @@ pub fn stage_animation(
     let count = frame_count(timeline.duration(), animation.fps)?;
     let frames = Frames::of(job.output, count - 1);
     loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
-    for place in places(job.output, count)? {
+    for place in checked_places(job.output, count)? {
         // Only a glTF comes back whole with the animation, so only that may replace FILE.
         let edited = matches!(kind, Kind::Morphs).then_some(job.file);
         job.refuse_outputs(&place, edited, watch)?;

@@ -286,8 +286,11 @@ impl AnimationFiles<'_> {
     }
 }
 
-/// The checked places of an animation's files.
-pub(crate) fn places(output: &Path, count: usize) -> Result<Vec<PathBuf>, EngineError> {
+/// The places of an animation's files.
+///
+/// # Errors
+/// A place where no file can be written.
+pub(crate) fn checked_places(output: &Path, count: usize) -> Result<Vec<PathBuf>, EngineError> {
     let places: Vec<PathBuf> = Frames::of(output, count.saturating_sub(1)).all().collect();
     for place in &places {
         Destination::of(place)?;

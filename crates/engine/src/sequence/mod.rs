@@ -31,7 +31,7 @@ pub use self::report::SequenceReport;
 use self::run::{Run, To};
 use self::source::Source;
 use crate::EngineError;
-use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, places};
+use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, checked_places};
 use crate::apply::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::Staging;
@@ -144,7 +144,7 @@ impl Sequence<'_> {
         watch: &Watch,
     ) -> Result<AnimationFiles<'b>, EngineError> {
         loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
-        for place in places(self.job.output, count)? {
+        for place in checked_places(self.job.output, count)? {
             self.job.refuse_outputs(&place, None, watch)?;
         }
         self.frames

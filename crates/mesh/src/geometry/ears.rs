@@ -18,8 +18,7 @@ pub enum WithoutEar {
 /// if it has fewer than three. Its corners may be on lines, and a hole may be joined to its outline by an edge there and
 /// back.
 ///
-/// Of several ears, that with the shortest cut goes first, as `length` measures between two corners: this keeps slivers
-/// away. A triangle whose doubled area is at most `flat` has no sure direction and is no ear. `None` if there is no ear
+/// The ear with the shortest cut goes first, as `length` measures between two corners: this keeps slivers away. A triangle whose doubled area is at most `flat` has no sure direction and is no ear. `None` if there is no ear
 /// and `without_ear` gives up.
 ///
 /// Only a corner that does not turn left can be in the triangle of another, so a convex polygon of n corners takes

@@ -73,13 +73,21 @@ impl Session {
         let start = Instant::now();
         while !is_done(self) {
             assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "it never came about: {}",
-                self.status()
+                start.elapsed() < Duration::from_secs(120),
+                "still {}, {:?}",
+                self.status(),
+                self.harness.state().headline()
             );
             std::thread::sleep(Duration::from_millis(5));
             self.harness.step();
         }
+    }
+
+    /// The same, and then until no work is running.
+    #[track_caller]
+    pub fn settle_when(&mut self, is_done: impl Fn(&Self) -> bool) {
+        self.wait_until(is_done);
+        self.settle();
     }
 
     pub fn status(&self) -> String {

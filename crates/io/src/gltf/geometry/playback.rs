@@ -25,8 +25,8 @@ pub struct MorphPlayback {
 #[derive(Clone, PartialEq, Debug)]
 struct Part {
     vertices: Range<usize>,
-    /// Of each target: its weight at rest, and the ways of the vertices at full weight in world space. Single precision is
-    /// that of the file.
+    /// Each target's weight at rest and the displacements of the vertices at full weight in world space, in the file's own
+    /// single precision.
     targets: Vec<(f64, Vec<Vec3>)>,
     track: WeightTrack,
 }
