@@ -8,7 +8,6 @@
     reason = "tests fail by panicking, say what they skip, and do not need every verb of the rig"
 )]
 
-
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
