@@ -124,10 +124,7 @@ impl Cache {
 }
 
 fn point_of_vertex(model: &Model) -> Vec<u32> {
-    let vertices = 0..model.surface.positions.len() as u32;
-    vertices
-        .map(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
-        .collect()
+    model.first_file_vertices().iter().map(|point| point.0).collect()
 }
 
 fn vertex_of_point(model: &Model) -> Vec<Option<SurfaceVertex>> {

@@ -42,9 +42,10 @@ pub fn fill(job: &Fill<'_>, watch: &Watch, staging: &Staging) -> Result<Stitched
         let own = filled.unfilled.iter().filter(|unfilled| is_meant(unfilled.reason));
         own.map(|unfilled| unfilled.count).sum::<usize>()
     };
+    let file_vertices = loaded.model.first_file_vertices();
     let hole_report = |hole: &FilledHole| {
         json!({
-            "vertex": loaded.model.first_file_vertex(hole.borders[0].vertices[0]).0,
+            "vertex": file_vertices[hole.borders[0].vertices[0].index()].0,
             "edges": hole.borders.iter().map(|border| border.vertices.len()).sum::<usize>(),
             "length": hole.borders.iter().map(|border| border.length).sum::<f64>(),
             "points": hole.points.len(),

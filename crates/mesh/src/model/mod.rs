@@ -155,9 +155,15 @@ impl Model {
         self.drawn.file_vertices().map(|file| chosen[file.index()]).collect()
     }
 
-    /// The lowest of the file's vertices behind a surface vertex.
+    /// The lowest of the file's vertices behind a surface vertex. It searches all drawn vertices, so callers that ask for
+    /// many vertices take [`Self::first_file_vertices`].
     pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
         self.drawn.first_file_vertices(vertex.index()..vertex.index() + 1)[0]
+    }
+
+    /// The lowest of the file's vertices behind each surface vertex.
+    pub fn first_file_vertices(&self) -> Vec<FileVertex> {
+        self.drawn.first_file_vertices(0..self.surface.positions.len())
     }
 
     /// The faults of the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].

@@ -99,10 +99,8 @@ pub fn select(models: &mut Models, given: Select, watch: &Watch) -> Result<Answe
         .map(|vertex| model.surface.positions[vertex.index()])
         .collect();
     let mean = positions.iter().sum::<DVec3>() / positions.len().max(1) as f64;
-    let mut numbers: Vec<u32> = vertices
-        .iter()
-        .map(|&vertex| model.first_file_vertex(vertex).0)
-        .collect();
+    let file_vertices = model.first_file_vertices();
+    let mut numbers: Vec<u32> = vertices.iter().map(|vertex| file_vertices[vertex.index()].0).collect();
     numbers.sort_unstable();
     let ranges = ranges(&numbers);
     Ok(Answer::json(&json!({
