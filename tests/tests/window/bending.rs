@@ -230,7 +230,7 @@ fn a_pose_is_kept_and_taken_again() {
 }
 
 /// The window's picture at its full smoothness.
-fn picture(session: &mut Session) -> image::RgbaImage {
+pub fn picture(session: &mut Session) -> image::RgbaImage {
     session.settle();
     let start = Instant::now();
     let mut before = session.harness.render().unwrap();
@@ -250,7 +250,7 @@ fn picture(session: &mut Session) -> image::RgbaImage {
 }
 
 /// The number of places of the view in which two pictures differ, without the text over its top and its corner.
-fn differences(session: &Session, a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
+pub fn differences(session: &Session, a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
     let view = session.harness.state().view_rect();
     let (columns, rows) = (
         view.left() as u32 + 60..view.right() as u32 - 60,

@@ -14,6 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::bending::{differences, picture};
 use crate::window_rig::Session;
 use egui::{Key, Modifiers, vec2};
 use glam::{DAffine3, DQuat, DVec3};
@@ -101,6 +102,34 @@ fn a_filled_shape_is_the_command_lines_and_undo_and_redo_change_the_picture() {
             assert_eq!(fs::read(&saved).unwrap(), fs::read(&by_command).unwrap(), "{format}");
         }
     }
+}
+
+#[test]
+fn undoing_a_change_of_the_mesh_shows_the_former_picture_with_its_bend_and_regions() {
+    let folder = Folder::new();
+    let Some(mut session) = begin(&bowl_file(&folder, "off")) else {
+        return;
+    };
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.z.total_cmp(&b.z)).unwrap());
+    session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
+    for key in [Key::G, Key::Z, Key::Num0, Key::Period, Key::Num5, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    let before = picture(&mut session);
+    command(&mut session, Command::FillHoles);
+    command(&mut session, Command::ClearRegions);
+    let after = picture(&mut session);
+    assert!(differences(&session, &before, &after) > 500, "the regions are gone");
+    for _ in 0..2 {
+        command(&mut session, Command::Undo);
+        command(&mut session, Command::Undo);
+        let undone = picture(&mut session);
+        assert_eq!(differences(&session, &before, &undone), 0);
+        command(&mut session, Command::Redo);
+        command(&mut session, Command::Redo);
+    }
+    let redone = picture(&mut session);
+    assert_eq!(differences(&session, &after, &redone), 0);
 }
 
 #[test]

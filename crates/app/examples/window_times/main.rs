@@ -2,7 +2,7 @@
 //! object a line.
 //!
 //! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application
-//! without a display, paints a handle on its highest part, drags it for 60 pointer moves, runs the menus' commands, draws
+//! without a display, paints a handle on its upper part, drags it for 60 pointer moves, runs the menus' commands, draws
 //! lines and changes the mesh. `longest_frame_ms` leaves drawing out, because a software device draws on the processor;
 //! `drawn_*` are whole frames, for a real device.
 
@@ -20,6 +20,7 @@ mod session;
 use std::time::{Duration, Instant};
 
 use egui::{Key, Modifiers, vec2};
+use glam::DVec3;
 use pliant_editor::{Command, Reach};
 
 use lines::lines;
@@ -36,12 +37,16 @@ fn main() {
         let view = session.harness.state().editor().view();
         let model = view.model.expect("the file opened");
         let positions = &model.surface.positions;
-        let highest = positions
+        let bounds = model.bounds().expect("it has vertices");
+        // The vertex that is nearest to the viewer in the uppermost eighth.
+        let is_high = |at: &&DVec3| at.y > bounds.max.y - bounds.extent().y / 8.0;
+        let nearness = |at: &DVec3| -view.camera.eye().distance_squared(*at);
+        let top = positions
             .iter()
-            .max_by(|a, b| a.y.total_cmp(&b.y))
-            .expect("the file has vertices");
-        let size = model.bounds().expect("it has vertices").diagonal();
-        (session.place_of(*highest) + vec2(0.0, 8.0), positions.len(), size)
+            .filter(is_high)
+            .max_by(|a, b| nearness(a).total_cmp(&nearness(b)))
+            .expect("the highest vertex is among them");
+        (session.place_of(*top), positions.len(), bounds.diagonal())
     };
     session.move_to(top);
     session.step();

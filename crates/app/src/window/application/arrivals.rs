@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use pliant_editor::{Command, Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
@@ -12,6 +11,7 @@ use crate::window::panels::notes::Notes;
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use crate::window::threads::workers::PoseSource;
+use crate::window::viewport::shown::Shown;
 use pliant_engine::Loaded;
 use pliant_picture::drawing::{self, Drawing, Field};
 
@@ -125,10 +125,10 @@ impl Application {
         }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         self.pose_from(&loaded, &drawing);
-        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
         // The sample is about bending: it is in clay, as on its pictures.
         let has_vertex_colours = is_file && drawing.has_vertex_colours();
-        self.viewport.show(drawing, surface, displacements, lowest);
+        self.viewport
+            .show(Shown::new(drawing, surface, displacements, &loaded.model));
         self.notes = Notes {
             headline: None,
             about_file: notes,

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use glam::DVec3;
 use pliant_editor::{Command, Event, MeshChange, Revision};
 
 use crate::window::application::Application;
 use crate::window::input::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Refusal, Stitched};
+use crate::window::viewport::shown::Shown;
 
 impl Application {
     /// Puts another file beside the present shape, off the window's thread.
@@ -76,7 +76,7 @@ impl Application {
         if Arc::ptr_eq(&open.loaded.model, model) {
             return;
         }
-        let Some(surface) = self.session.others.open(model, open) else {
+        let Some(kept) = self.session.others.open(model, open) else {
             return;
         };
         let (loaded, drawing) = (Arc::clone(&open.loaded), Arc::clone(&open.drawing));
@@ -85,22 +85,17 @@ impl Application {
         self.session.others.forget_unless(leads_to);
         self.redrawing = None;
         self.pose_from(&loaded, &drawing);
-        let displacements = match &surface {
-            Some(_) => Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]),
-            None => Arc::clone(self.editor.view().drawn),
-        };
-        let uploaded = match surface {
-            Some(surface) => Ok(surface),
+        let shown = match kept {
+            Some(kept) => Ok(kept),
             None => {
+                let displacements = Arc::clone(self.editor.view().drawn);
                 let pose = drawing.pose(&loaded.model, &displacements);
-                self.viewport.gpu().upload(&drawing, &pose)
+                let surface = self.viewport.gpu().upload(&drawing, &pose);
+                surface.map(|surface| Shown::new(drawing, surface, displacements, &loaded.model))
             }
         };
-        match uploaded {
-            Ok(surface) => {
-                let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
-                self.viewport.show(drawing, surface, displacements, lowest);
-            }
+        match shown {
+            Ok(shown) => self.session.others.keep(self.viewport.show(shown)),
             Err(error) => self.fail(error.to_string()),
         }
     }

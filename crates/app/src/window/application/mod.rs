@@ -48,6 +48,7 @@ use super::widgets::{icon, theme};
 use crate::files::names::file_name;
 use crate::window::session::{Session, Source};
 use crate::window::viewport::pose_queue::PoseQueue;
+use crate::window::viewport::shown::Shown;
 use pliant_engine::EngineError;
 
 /// The time that the view must rest before a software device draws it with smooth borders.
@@ -195,8 +196,9 @@ impl Application {
             let displacements = Arc::clone(self.editor.view().drawn);
             let pose = drawing.pose(model, &displacements);
             let surface = self.viewport.gpu().upload(&drawing, &pose).map_err(system)?;
-            let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
-            self.viewport.show(drawing, surface, displacements, lowest);
+            self.viewport.show(Shown::new(drawing, surface, displacements, model));
+            // It was in the memory of the lost device.
+            self.session.others.keep(None);
         }
         self.notes.headline = Some(Note::Done(
             "The graphics device was lost and opened again; the document is unchanged.".to_owned(),

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use crate::window::application::Application;
 use crate::window::threads::message::{Message, Redrawn};
+use crate::window::viewport::shown::Shown;
 use pliant_picture::drawing::Drawing;
 
 impl Application {
@@ -72,7 +71,7 @@ impl Application {
         self.workers.set_pose_source(source);
         self.poses.cancel();
         self.stop_images();
-        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
-        self.viewport.show(drawing, surface, displacements, lowest);
+        self.viewport
+            .show(Shown::new(drawing, surface, displacements, &loaded.model));
     }
 }

@@ -189,26 +189,11 @@ impl Viewport {
         self.drawing_time
     }
 
-    /// Shows another file.
-    pub fn show(&mut self, drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>, lowest: DVec3) {
+    /// Shows another file. Returns the surface that was shown.
+    pub fn show(&mut self, shown: Shown) -> Option<Shown> {
         self.drawn = None;
         self.coarseness = Coarseness::default();
-        self.surface = Some(Shown {
-            awaits_images: drawing.materials.has_images(),
-            surface,
-            drawing,
-            displacements,
-            lowest,
-            colours: Colours::None,
-            drawn_colours: Vec::new(),
-            rims: None,
-            scale: None,
-            materials: None,
-            weights: None,
-            materials_revision: 0,
-            shown: None,
-            shadow: None,
-        });
+        self.surface.replace(shown)
     }
 
     /// Gives the shown file its materials with their images, if it is still this one.

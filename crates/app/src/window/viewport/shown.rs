@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Editor, SceneView, UpAxis};
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{Model, SurfaceVertex};
 use pliant_render::{Grid, Materials, RenderError, Renderer, Surface};
 
 use super::gpu::Gpu;
@@ -41,6 +41,35 @@ pub struct Shown {
 pub type ShadowKey = (usize, usize, UpAxis);
 
 impl Shown {
+    /// A drawing of a model in GPU buffers, with these displacements of the surface's vertices.
+    pub fn new(drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>, model: &Model) -> Self {
+        Self {
+            awaits_images: drawing.materials.has_images(),
+            surface,
+            drawing,
+            displacements,
+            lowest: model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min),
+            colours: Colours::None,
+            drawn_colours: Vec::new(),
+            rims: None,
+            scale: None,
+            materials: None,
+            weights: None,
+            materials_revision: 0,
+            shown: None,
+            shadow: None,
+        }
+    }
+
+    /// It once more, after another one was shown: the editor's regions and their rims may be others.
+    pub fn anew(self) -> Self {
+        Self {
+            colours: Colours::None,
+            rims: None,
+            ..self
+        }
+    }
+
     /// The grid under the file's lowest point.
     pub fn ground(&self, view: &SceneView<'_>) -> Grid {
         self.floor().grid(view)

@@ -10,6 +10,7 @@ use super::Viewport;
 use crate::window::threads::message::{Message, Posed};
 use crate::window::threads::workers::{PoseSource, Workers};
 use crate::window::viewport::pose_queue::PoseQueue;
+use crate::window::viewport::shown::Shown;
 use pliant_picture::drawing::Drawing;
 
 /// A view beside the first, with its own threads.
@@ -70,9 +71,8 @@ impl SideView {
                 match result {
                     Ok(surface) => {
                         let model = &source.loaded.model;
-                        let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
                         let rest = Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]);
-                        self.viewport.show(drawing, surface, rest, lowest);
+                        self.viewport.show(Shown::new(drawing, surface, rest, model));
                     }
                     Err(sentence) => self.problem = Some(sentence),
                 }
