@@ -86,7 +86,7 @@ pub use attachment::{
     LARGEST_WEIGHT,
 };
 pub use attachment_refused::AttachmentRefused;
-pub use bound::{Accuracy, Bound, Step, Target, Valley};
+pub use bound::{Accuracy, Bound, Step, Target, TurnedMap, Valley};
 pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};
 pub use fairing::fair;

@@ -7,6 +7,7 @@
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
+use crate::handles::polar::Polar;
 use crate::handles::{Handle, Motion};
 use crate::needs::ConstraintKind;
 use crate::numerical::rigid_fit::RigidMotion;
@@ -203,6 +204,15 @@ impl Part {
         moved.extend(vertices.map(|&vertex| displacements[vertex as usize]));
         let fit = RigidMotion::fit(&self.rest, moved);
         fit.map_or(Motion::default(), |fit| self.handle.rigid_motion(&fit))
+    }
+
+    /// The motion with the full turns that are nearest to those of the `last` one.
+    pub fn wound(&self, motion: Motion, last: &Motion) -> Motion {
+        let shortest = Polar::of(&self.handle.linear(&motion));
+        Motion {
+            turn_rad: Some(shortest.near(last.turn_rad.unwrap_or_default()).turn_rad),
+            ..motion
+        }
     }
 
     /// Moves the part as one body.

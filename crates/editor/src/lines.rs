@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Role, Target};
+use pliant_deform::{Role, Target, TurnedMap};
 use pliant_mesh::{Surface, SurfaceVertex};
 
 use crate::crease;
@@ -12,7 +12,7 @@ use crate::outline;
 
 /// The sections of a handle along its line ([`pliant_deform::Constraints::sections`]): at a bend by 300 degrees each of
 /// them turns by less than 10 degrees against the next.
-const SECTIONS: f64 = 32.0;
+const SECTIONS: u16 = 32;
 
 /// In one step a curve turns by at most this angle, in radians, so that methods follow full turns.
 const STEP_RAD: f64 = std::f64::consts::FRAC_PI_4;
@@ -151,12 +151,12 @@ impl Lines {
                 continue;
             };
             if let Some(first) = laid.vertices.maps(share) {
-                let both = |first: DAffine3| {
-                    if *then == DAffine3::IDENTITY {
-                        first
-                    } else {
-                        *then * first
-                    }
+                let both = |first: TurnedMap| match *then == DAffine3::IDENTITY {
+                    true => first,
+                    false => TurnedMap {
+                        map: *then * first.map,
+                        ..first
+                    },
                 };
                 *target = Target::Maps(first.into_iter().map(both).collect());
             }
@@ -167,12 +167,15 @@ impl Lines {
 
 impl Followers {
     /// The map of each vertex at a share of the way; `None` if nothing moves.
-    fn maps(&self, share: f64) -> Option<Vec<DAffine3>> {
+    fn maps(&self, share: f64) -> Option<Vec<TurnedMap>> {
         match self {
             Self::Curve(curve, places) => {
                 let curve = curve.part(share);
                 let motion = curve.motion_at(1.0);
                 let sharpen = curve.crease().map_or(0.0, |crease| crease.sharpen());
+                let length = curve.rest().length();
+                let turn = |section: u16| curve.turn_rad((f64::from(section) + 0.5) / f64::from(SECTIONS) * length);
+                let turns_rad: Vec<DVec3> = (0..SECTIONS).map(turn).collect();
                 let map = |own: &OnCurve| {
                     let sharper = DAffine3::from_translation(own.detail * sharpen);
                     match (motion.is_rest(), sharpen == 0.0) {
@@ -181,12 +184,19 @@ impl Followers {
                         (false, false) => motion.map_at(own.place) * sharper,
                     }
                 };
-                (!curve.is_rest()).then(|| places.iter().map(map).collect())
+                let turned = |own: &OnCurve| TurnedMap {
+                    map: map(own),
+                    turn_rad: turns_rad[usize::from(section(own.place / length))],
+                };
+                (!curve.is_rest()).then(|| places.iter().map(turned).collect())
             }
             Self::Sketch(ways) => {
                 let maps = || {
                     ways.iter()
-                        .map(|way| DAffine3::from_translation(*way * share))
+                        .map(|way| TurnedMap {
+                            map: DAffine3::from_translation(*way * share),
+                            turn_rad: DVec3::ZERO,
+                        })
                         .collect()
                 };
                 (share != 0.0).then(maps)
@@ -247,5 +257,5 @@ fn to_sketch(sketch: &HandleSketch, vertices: &[usize], surface: &Surface, secti
 
 /// The section after a share of the line.
 fn section(share: f64) -> u16 {
-    (SECTIONS * share).min(SECTIONS - 1.0) as u16
+    ((f64::from(SECTIONS) * share) as u16).min(SECTIONS - 1)
 }

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 use std::fs;
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3, Vec3Swizzles};
 use pliant_deform::{HandleFit, METHODS, Method};
 use pliant_mesh::{Curve, Drawn, shapes};
 use pliant_tests::{Folder, bend, largest_distance, open};
@@ -147,6 +147,35 @@ fn a_twist_by_a_full_turn_winds_the_bar_once() {
             let wanted = DVec3::new(p.x, 1.0, 1.0) + turn * DVec3::new(0.0, p.y - 1.0, p.z - 1.0);
             let limit = if p.x % 3.0 == 0.0 { 1e-9 } else { 0.4 };
             assert!(wanted.distance(*q) < limit, "{method} at {p}: {}", wanted.distance(*q));
+        }
+    }
+}
+
+#[test]
+fn a_full_turn_winds_the_bar_once_where_only_its_ends_follow_the_curve() {
+    let drawn = bar();
+    let curve = json!({ "points": list(&middle(2)), "twist": [0, 360] });
+    let ends: Vec<usize> = (0..drawn.positions.len())
+        .filter(|v| !(3.0..=LENGTH - 3.0).contains(&drawn.positions[*v].x))
+        .collect();
+    // A drag of which each frame turns the end by 72 degrees ends as one solve does.
+    for (method, more) in [
+        ("arap", &[][..]),
+        ("arap", &["--frames", "5"]),
+        ("primo", &[]),
+        ("shells", &[]),
+    ] {
+        let found = bent(&drawn, &edit(method, &json!({ "vertices": ends }), &curve), more);
+        for tenth in 0..=10_u32 {
+            let x = (LENGTH * f64::from(tenth) / 10.0).round();
+            let section = drawn.positions.iter().zip(&found).filter(|(p, _)| p.x == x);
+            // The sum of the arms' products as complex numbers, in which the section's own way falls out.
+            let turn = section.fold(DVec2::ZERO, |sum, (p, q)| {
+                sum + DVec2::new(p.y - 1.0, 1.0 - p.z).rotate(q.yz())
+            });
+            let off = turn.angle_to(DVec2::from_angle(TAU * x / LENGTH)).to_degrees().abs();
+            let limit = if tenth == 5 { 2.0 } else { 15.0 };
+            assert!(off < limit, "{method} {more:?} at {x}: {off}");
         }
     }
 }

@@ -236,6 +236,7 @@ impl Bound {
             slides: None,
             world_rest,
             takes_places,
+            largest_gap_rad: implementation.largest_gap_rad(),
             is_exact: implementation.handle_fit() == HandleFit::Exact,
             soft: partition.soft,
             handles,

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use self::sections::Sections;
 use self::slides::Slides;
 pub use self::step::Step;
-pub use self::target::Target;
+pub use self::target::{Target, TurnedMap};
 pub use self::valley::{Accuracy, Valley};
 use crate::attachment::{check_weights, finite};
 use crate::handles::finite::Finite;
@@ -42,6 +42,8 @@ pub struct Bound {
     /// The handles' rest positions, if the method takes places or a handle has sections.
     world_rest: Vec<Vec<DVec3>>,
     takes_places: bool,
+    /// The largest difference between the turns of a handle's vertices with which the surface between them turns.
+    largest_gap_rad: f64,
     /// True if the method holds hard handles exactly.
     is_exact: bool,
     /// Each handle's weight, if it is soft.
@@ -447,8 +449,13 @@ impl RigidParts {
     /// # Errors
     /// Those of a step.
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        let of_parts: Vec<Motion> = (self.parts.iter())
-            .map(|part| part.motion(displacements, &mut self.moved))
+        let winds = motions.iter().any(Motion::is_wound);
+        let of_parts = self.parts.iter().zip(&self.bound.motions[motions.len()..]);
+        let of_parts: Vec<Motion> = of_parts
+            .map(|(part, last)| {
+                let motion = part.motion(displacements, &mut self.moved);
+                if winds { part.wound(motion, last) } else { motion }
+            })
             .collect();
         self.bound.follow([motions, &of_parts].concat());
         let step = self.bound.step(displacements)?;

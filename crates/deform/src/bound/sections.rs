@@ -4,9 +4,9 @@
 //! section is bound as a handle of its own; callers still see one handle. A method that does not take turns binds such a
 //! handle as a whole: places are enough for it, and sections would only cost memory.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DMat3, DVec3};
 
-use super::target::Target;
+use super::target::{Target, TurnedMap};
 use crate::handles::{Handle, Motion};
 use crate::numerical::rigid_fit::best_rotation;
 use crate::{Constraints, Problem, Role};
@@ -140,24 +140,38 @@ impl Sections {
     }
 }
 
+/// The largest difference, in radians, between the turns of two vertices with these maps if no vertex has a turn between
+/// them.
+pub(super) fn largest_gap_rad(maps: &[TurnedMap]) -> f64 {
+    let mut turns: Vec<f64> = maps.iter().map(|map| map.turn_rad.length()).collect();
+    turns.sort_unstable_by(f64::total_cmp);
+    turns.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+}
+
 /// The motion of a section whose vertices move with these maps: their mean place, turn and size.
-pub(super) fn mean_motion(handle: &Handle, maps: &[DAffine3]) -> Motion {
-    let Some(first) = maps.first() else {
+pub(super) fn mean_motion(handle: &Handle, maps: &[TurnedMap]) -> Motion {
+    let Some(TurnedMap { map: first, .. }) = maps.first() else {
         return Motion::default();
     };
-    if maps.iter().all(|map| map == first) {
-        return handle.motion(first);
-    }
     let count = maps.len() as f64;
+    let turn_rad = Some(maps.iter().map(|map| map.turn_rad).sum::<DVec3>() / count);
+    let maps = || maps.iter().map(|own| &own.map);
+    if maps().all(|map| map == first) {
+        return Motion {
+            turn_rad,
+            ..handle.motion(first)
+        };
+    }
     // As differences from the first map, so that far from the origin the shift keeps its digits.
     let start = handle.motion(first);
-    let others = maps.iter().map(|map| handle.motion(map).shift - start.shift);
+    let others = maps().map(|map| handle.motion(map).shift - start.shift);
     let shift = start.shift + others.sum::<DVec3>() / count;
-    let sum = maps.iter().fold(DMat3::ZERO, |sum, map| sum + map.matrix3.transpose());
-    let size = maps.iter().map(|map| map.matrix3.determinant().cbrt()).sum::<f64>() / count;
+    let sum = maps().fold(DMat3::ZERO, |sum, map| sum + map.matrix3.transpose());
+    let size = maps().map(|map| map.matrix3.determinant().cbrt()).sum::<f64>() / count;
     let linear = DMat3::from_quat(best_rotation(&sum)) * size;
     Motion {
         linear: (linear - DMat3::IDENTITY) * handle.radius,
         shift,
+        turn_rad,
     }
 }

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Bound;
-use super::sections::{Sections, mean_motion};
-use super::target::Target;
+use super::sections::{Sections, largest_gap_rad, mean_motion};
+use super::target::{Target, TurnedMap};
 use crate::handles::Motion;
 use crate::handles::offsets::Offsets;
-use crate::{SolveError, Warning};
+use crate::{Remedy, SolveError, Warning};
 
 impl Bound {
     /// Sets the handles' targets: for each handle, one affine map of world positions, from rest.
@@ -73,6 +73,7 @@ impl Bound {
         let is_rest = aims.own_ways.iter().all(|(_, way)| *way == DVec3::ZERO);
         self.own_ways = if is_rest { Vec::new() } else { aims.own_ways };
         self.aim(aims.motions, aims.offsets.sorted(), &aims.placed);
+        self.warn_of_gaps(targets);
         Ok(())
     }
 
@@ -153,6 +154,30 @@ impl Bound {
         self.target_warnings = self.warnings.len();
     }
 
+    /// Adds a sentence about each handle that turns far where it has no vertices, beyond what the method
+    /// follows.
+    fn warn_of_gaps(&mut self, targets: &[Target]) {
+        if self.largest_gap_rad.is_infinite() {
+            return;
+        }
+        for (number, target) in targets.iter().enumerate() {
+            let Target::Maps(maps) = target else { continue };
+            let gap_rad = largest_gap_rad(maps);
+            if gap_rad > self.largest_gap_rad {
+                let degrees = gap_rad.to_degrees().round();
+                let others = Remedy::FollowingTurns(degrees as u16);
+                self.warnings.push(Warning::of_handle(number, |handle| {
+                    format!(
+                        "{handle} turns by {degrees:.0}° where it has no vertices, which `{}` does not follow: select \
+                         vertices all along the curve, or take {others}",
+                        self.name
+                    )
+                }));
+            }
+        }
+        self.target_warnings = self.warnings.len();
+    }
+
     /// The warnings with the numbers of handles instead of those of sections.
     pub(super) fn about_handles(&self, warnings: Vec<Warning>) -> Vec<Warning> {
         match &self.sections {
@@ -175,7 +200,8 @@ struct Aims {
 }
 
 /// The displacement of each point by its map.
-fn ways(maps: &[DAffine3], world_rest: &[DVec3]) -> Vec<DVec3> {
-    let way = |(map, rest): (&DAffine3, &DVec3)| (map.matrix3 - DMat3::IDENTITY) * *rest + map.translation;
+fn ways(maps: &[TurnedMap], world_rest: &[DVec3]) -> Vec<DVec3> {
+    let way =
+        |(TurnedMap { map, .. }, rest): (&TurnedMap, &DVec3)| (map.matrix3 - DMat3::IDENTITY) * *rest + map.translation;
     maps.iter().zip(world_rest).map(way).collect()
 }

@@ -52,7 +52,7 @@ pub(crate) trait Twice {
 /// Before a step towards other targets: a second descent becomes due where it may find another minimum, and one that
 /// has not ended gives way to the first end.
 pub(crate) fn aim(descent: &mut impl Twice, motions: &[Motion]) {
-    let goes_on = descent.goes_on();
+    let goes_on = descent.goes_on() && !motions.iter().any(Motion::is_wound);
     let is_far = is_far(descent.handles(), motions, descent.size());
     if let Some(first) = descent.rival().aim(goes_on, is_far) {
         descent.put_back(first);

@@ -10,6 +10,7 @@ pub(crate) mod finite;
 pub(crate) mod offsets;
 pub(crate) mod polar;
 pub(crate) mod residual;
+pub(crate) mod screw;
 pub(crate) mod turns;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -20,6 +21,9 @@ use crate::{Remedy, Warning};
 
 /// The number of surface vertices that one task displaces.
 pub(crate) const FRAME_CHUNK: usize = 4096;
+
+/// Half a turn with room for rounding, in radians.
+pub(crate) const HALF_TURN: f64 = std::f64::consts::PI * (1.0 + 1e-9);
 
 /// A handle's vertices and its frame.
 #[derive(Clone, Debug)]
@@ -37,6 +41,8 @@ pub(crate) struct Handle {
 pub(crate) struct Motion {
     pub linear: DMat3,
     pub shift: DVec3,
+    /// The turn of the whole way from rest if it is known, axis times angle in radians: `linear` shows no full turns.
+    pub turn_rad: Option<DVec3>,
 }
 
 impl Default for Motion {
@@ -45,6 +51,7 @@ impl Default for Motion {
         Self {
             linear: DMat3::ZERO,
             shift: DVec3::ZERO,
+            turn_rad: None,
         }
     }
 }
@@ -88,6 +95,7 @@ impl Handle {
         Motion {
             linear: change * self.radius,
             shift: change * self.world_centre + world_target.translation,
+            turn_rad: None,
         }
     }
 
@@ -96,6 +104,7 @@ impl Handle {
         Motion {
             linear: motion.linear * (self.radius / other.radius),
             shift: motion.displace(other.coordinates(self.world_centre)),
+            turn_rad: motion.turn_rad,
         }
     }
 
@@ -104,6 +113,7 @@ impl Handle {
         Motion {
             linear: rigid.turn * self.radius,
             shift: rigid.displace(self.world_centre),
+            turn_rad: None,
         }
     }
 }
@@ -114,9 +124,14 @@ impl Motion {
         self.linear * DVec3::new(coordinates[0], coordinates[1], coordinates[2]) + self.shift * coordinates[3]
     }
 
-    /// Returns true if nothing moves.
+    /// Returns true if nothing moves or has turned on its way.
     pub fn is_rest(&self) -> bool {
-        *self == Self::default()
+        self.linear == DMat3::ZERO && self.shift == DVec3::ZERO && !self.is_wound()
+    }
+
+    /// Returns true if the way turns by more than half a turn, so that the shape cannot be found from the map alone.
+    pub fn is_wound(&self) -> bool {
+        self.turn_rad.is_some_and(|turn| turn.length() > HALF_TURN)
     }
 }
 

@@ -62,22 +62,23 @@ impl Polar {
     }
 }
 
-/// The parts of the handles' maps under these motions. Turns continue from those of the `last` step.
+/// The parts of the handles' maps under these motions. Turns are those of the handles' ways, and where these are not known
+/// continue from those of the `last` step.
 pub(crate) fn polars_of(last: &[Polar], handles: &[Handle], motions: &[Motion]) -> Vec<Polar> {
-    let linears = handles
-        .iter()
-        .zip(motions)
-        .map(|(handle, motion)| handle.linear(motion));
-    following(last, linears)
+    let linears = handles.iter().zip(motions);
+    following(
+        last,
+        linears.map(|(handle, motion)| (handle.linear(motion), motion.turn_rad)),
+    )
 }
 
-/// The parts of the handles' maps that follow those of the `last` step: the logarithms nearest to them. If two are
+/// The parts of the handles' maps that follow their ways, or else those of the `last` step: the logarithms nearest to them. If two are
 /// equally near (half a turn), the first handle decides for all, so that handles that move alike turn alike.
-fn following(last: &[Polar], linears: impl Iterator<Item = DMat3>) -> Vec<Polar> {
+fn following(last: &[Polar], linears: impl Iterator<Item = (DMat3, Option<DVec3>)>) -> Vec<Polar> {
     let mut lead = DVec3::ZERO;
     let mut followed = Vec::with_capacity(last.len());
-    for (handle, (last, linear)) in last.iter().zip(linears).enumerate() {
-        let polar = Polar::of(&linear).near(last.turn_rad + lead * BIAS);
+    for (handle, (last, (linear, way_rad))) in last.iter().zip(linears).enumerate() {
+        let polar = Polar::of(&linear).near(way_rad.unwrap_or(last.turn_rad + lead * BIAS));
         if handle == 0 {
             lead = polar.turn_rad;
         }
@@ -155,7 +156,7 @@ mod tests {
             turned(1.0) * -2.0,
             DMat3::ZERO,
         ] {
-            let polars = following(&[Polar::default(); 2], [linear; 2].into_iter());
+            let polars = following(&[Polar::default(); 2], [(linear, None); 2].into_iter());
             let change = Blend::of(&polars, [0.3, 0.7].into_iter()).change(v);
             assert!((change - (linear * v - v)).length() < 1e-12, "{linear}");
             assert_eq!(Blend::of(&polars, [0.0, 0.0].into_iter()).change(v), DVec3::ZERO);
@@ -167,7 +168,7 @@ mod tests {
         let mut last = [Polar::default()];
         for degree in (0_i32..=800).chain((-500..800).rev()).step_by(7) {
             let angle = f64::from(degree).to_radians();
-            last[0] = following(&last, std::iter::once(turned(angle)))[0];
+            last[0] = following(&last, std::iter::once((turned(angle), None)))[0];
             assert!((last[0].turn_rad - AXIS * angle).length() < 1e-9, "{degree}");
         }
     }
@@ -175,7 +176,7 @@ mod tests {
     #[test]
     fn handles_that_make_half_a_turn_together_turn_the_same_way() {
         let rest = [Polar::default(); 3];
-        let turns = [PI, PI + 1e-9, PI - 1e-9].map(turned);
+        let turns = [PI, PI + 1e-9, PI - 1e-9].map(|angle| (turned(angle), None));
         let polars = following(&rest, turns.into_iter());
         assert!(polars.iter().all(|p| p.turn_rad.distance(polars[0].turn_rad) < 1e-6));
     }

@@ -183,6 +183,12 @@ pub(crate) trait DeformMethod: Options {
         true
     }
 
+    /// The largest difference, in radians, between the turns of two vertices of a handle ([`crate::TurnedMap::turn_rad`])
+    /// with which the surface between them turns.
+    fn largest_gap_rad(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Bytes of a solved vertex in the method's tables, without matrices and factors, whose entries are counted one by
     /// one: as allocated, measured by `tests/memory.rs`.
     fn row_bytes(&self) -> usize {

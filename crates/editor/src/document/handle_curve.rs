@@ -302,6 +302,11 @@ impl HandleCurve {
         self.0.path.largest_turn_rad()
     }
 
+    /// The turn with which the surroundings of a place have come from rest, as in [`CurvePath::turn_rad`].
+    pub(crate) fn turn_rad(&self, place: f64) -> DVec3 {
+        self.0.path.turn_rad(&self.0.motion, place)
+    }
+
     /// The curve at the share `t` of its way ([`motion_at`](Self::motion_at)).
     pub(crate) fn part(&self, t: f64) -> Self {
         if t == 1.0 {

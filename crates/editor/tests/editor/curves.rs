@@ -4,10 +4,13 @@
 
 use std::sync::Arc;
 
+use crate::curve_strokes::px;
+use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3, Vec3Swizzles};
 use pliant_editor::{
-    Beginning, Command, Event, FREE_BEND_DEG, HandleCurve, HandleLine, MeshReference, Project, geometry_hash,
+    Beginning, Command, Event, FREE_BEND_DEG, HandleCurve, HandleLine, Key, MeshReference, NamedView, Project,
+    ToolMode, geometry_hash,
 };
 use pliant_mesh::shapes;
 use serde_json::json;
@@ -229,4 +232,72 @@ fn a_share_of_a_curve_is_keyed_and_exported_as_it_is_shown() {
         .map(|(a, b)| a.distance(*b))
         .fold(0.0, f64::max);
     assert!(apart < 1e-9, "{apart}");
+}
+
+/// A bar of which only the ends follow its middle line, whose far end has this twist in degrees.
+fn twisted_edit(method: &str, twist: f64) -> String {
+    let drawn = shapes::bar(LENGTH as usize, 2, 2);
+    let ends: Vec<usize> = (0..drawn.positions.len())
+        .filter(|v| !(3.0..=LENGTH - 3.0).contains(&drawn.positions[*v].x))
+        .collect();
+    let curve = json!({ "points": [[0, 1, 1], [LENGTH, 1, 1]], "twist": [0.0, twist] });
+    json!({
+        "version": 1, "method": { "name": method },
+        "handles": [{ "name": "spine", "select": { "vertices": ends }, "curve": curve }],
+    })
+    .to_string()
+}
+
+/// The angle between the bar's middle cross-section and one that has turned by `degrees`, in degrees.
+fn middle_off_deg(rig: &Rig, degrees: f64) -> f64 {
+    let shape = rig.editor.document().from_file();
+    let middle = rig.model.surface.positions.iter().zip(shape.iter());
+    let middle = middle.filter(|(rest, _)| rest.x == LENGTH / 2.0);
+    // The sum of the arms' products as complex numbers, in which the section's own way falls out.
+    let turn = middle.fold(DVec2::ZERO, |sum, (rest, way)| {
+        let (rest, arm) = (rest.yz() - 1.0, rest.yz() + way.yz());
+        sum + DVec2::new(rest.x, -rest.y).rotate(arm)
+    });
+    turn.angle_to(DVec2::from_angle(degrees.to_radians()))
+        .abs()
+        .to_degrees()
+}
+
+#[test]
+fn a_full_turn_of_a_bars_end_is_one_when_it_is_opened_dragged_undone_saved_and_opened_again() {
+    for method in ["arap", "primo", "shells"] {
+        let mut rig = Rig::open(shapes::bar(LENGTH as usize, 2, 2));
+        open(&mut rig, &twisted_edit(method, 360.0));
+        assert!(
+            middle_off_deg(&rig, 180.0) < 2.0,
+            "{method}, opened: {}",
+            middle_off_deg(&rig, 180.0)
+        );
+
+        open(&mut rig, &twisted_edit(method, 0.0));
+        assert_eq!(rig.largest_displacement(), 0.0);
+        let id = rig.editor.document().handles()[0].id;
+        rig.command(Command::SelectHandle(id));
+        rig.command(Command::SetTool(ToolMode::Select));
+        rig.command(Command::View(NamedView::Front));
+        rig.command(Command::FrameAll);
+        let end_px = px(&rig, present(&rig).moved()[1]);
+        rig.swipe(&[end_px]);
+        for _ in 0..6 {
+            rig.type_keys("r");
+            rig.type_keys("x60");
+            rig.key(Key::Enter);
+            rig.drain();
+        }
+        assert!((present(&rig).twist_deg()[1] - 360.0).abs() < 1e-9);
+        assert!(middle_off_deg(&rig, 180.0) < 2.0, "{method}, turned");
+        rig.undo();
+        rig.drain();
+        assert!(middle_off_deg(&rig, 150.0) < 2.0, "{method}, undone");
+        rig.redo();
+        rig.drain();
+        assert!(middle_off_deg(&rig, 180.0) < 2.0, "{method}, redone");
+        let again = reopened(&rig, &saved(&rig));
+        assert!(middle_off_deg(&again, 180.0) < 2.0, "{method}, opened again");
+    }
 }

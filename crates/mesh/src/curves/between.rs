@@ -13,8 +13,9 @@ use super::motion::{CurveMotion, STILL};
 pub struct CurvePath {
     rest: Vec<DVec3>,
     moved: Vec<DVec3>,
-    /// The chords at rest.
+    /// The chords at rest, and the places of their ends.
     chords: Vec<DVec3>,
+    places: Vec<f64>,
     /// The whole turn of each chord, axis times angle in radians, and the ratio of its lengths.
     turns_rad: Vec<DVec3>,
     ratios: Vec<f64>,
@@ -41,6 +42,7 @@ impl CurvePath {
             largest_twist_rad: twists.fold(0.0, f64::max),
             turns_rad: counted(turns),
             chords,
+            places,
             is_closed: rest.is_closed(),
             rest: rest.points().to_vec(),
             moved: moved.points().to_vec(),
@@ -75,6 +77,16 @@ impl CurvePath {
     pub fn largest_turn_rad(&self) -> f64 {
         let turns = self.turns_rad.iter().map(|turn| turn.length());
         turns.fold(0.0, f64::max) + self.largest_twist_rad
+    }
+
+    /// The turn with which the surroundings of a place have come from rest, axis times angle in radians; full turns count.
+    /// `motion` is the one whose way this is: first its frame turns, then the twist about the moved tangent adds up.
+    pub fn turn_rad(&self, motion: &CurveMotion, place: f64) -> DVec3 {
+        let after = self.places.partition_point(|end| *end <= place);
+        let chord = after.clamp(1, self.turns_rad.len()) - 1;
+        let frame = motion.turn_at(place);
+        let tangent = frame * motion.rest().frame(place).z_axis;
+        near(scaled_axis(frame), self.turns_rad[chord]) + tangent * motion.twist_at(place)
     }
 
     /// Moves the points so that those which move little are where they move on a straight way.

@@ -158,7 +158,7 @@ impl ArapSolver {
         }
         self.finish_step();
         coarse.restrict(&self.current, self.unit, &self.motions);
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws { from_rest, onwards, .. } = Screws::of(&self.handles, &self.motions, motions);
         coarse.aim();
         let screws = match coarse.start(motions, STEPS) {
             Origin::Current => onwards,

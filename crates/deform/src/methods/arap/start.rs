@@ -11,7 +11,8 @@ use crate::coarse::domain::ABSENT;
 use crate::descent::prescribed::Prescribed;
 use crate::descent::rule::State;
 use crate::handles::Motion;
-use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::handles::blend::{Origin, Screws};
+use crate::handles::screw::{Screw, carried};
 use crate::numerical::rows::CHUNK;
 
 /// The blend from the rest shape is skipped for at most this many targets: it costs as much as a step and rarely wins
@@ -25,7 +26,7 @@ impl ArapSolver {
     /// compared without them.
     pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws { from_rest, onwards, .. } = Screws::of(&self.handles, &self.motions, motions);
         self.leave(motions);
         self.state = State::Descending;
         if was_at_rest {

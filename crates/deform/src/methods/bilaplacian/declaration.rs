@@ -1,5 +1,6 @@
 //! The bi-Laplacian as one of the methods.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -120,6 +121,10 @@ impl DeformMethod for Bilaplacian {
 
     fn takes_turns(&self) -> bool {
         false
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        FRAC_PI_2
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

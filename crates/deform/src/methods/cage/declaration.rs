@@ -1,5 +1,7 @@
 //! Declares the cage as one of the methods.
 
+use std::f64::consts::PI;
+
 use faer::Mat;
 use glam::DVec3;
 
@@ -101,6 +103,10 @@ impl DeformMethod for Cage {
 
     fn check_attachment(&self, attachment: &Attachment) -> Result<(), AttachmentRefused> {
         brought::check(attachment)
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        PI
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

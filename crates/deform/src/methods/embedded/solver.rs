@@ -12,7 +12,8 @@ use crate::descent::energy::lower;
 use crate::descent::rival::{Rival, aim, compare};
 use crate::descent::rule::{Rule, State};
 use crate::handles::Motion;
-use crate::handles::blend::{HandleFrame, Screw, Screws, carried};
+use crate::handles::blend::{HandleFrame, Screws};
+use crate::handles::screw::{Screw, carried};
 use crate::numerical::dense;
 use crate::space::blend::Affine;
 
@@ -131,7 +132,11 @@ impl Solver {
     /// Takes the better of two starts, and a step from there.
     pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws {
+            from_rest,
+            onwards,
+            may_stay,
+        } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         let rest = vec![REST; self.maps.len()];
         let from_rest = self.carried(&rest, &from_rest);
@@ -139,7 +144,8 @@ impl Solver {
         let mut best = (from_rest, value);
         if !was_at_rest {
             let onwards = self.carried(&self.maps, &onwards);
-            for maps in [onwards, std::mem::take(&mut self.maps)] {
+            let last = std::mem::take(&mut self.maps);
+            for maps in std::iter::once(onwards).chain(may_stay.then_some(last)) {
                 let value = self.energy.evaluate(&maps, motions, None);
                 if value < best.1 {
                     best = (maps, value);

@@ -78,6 +78,7 @@ impl LaplacianSolver {
             Motion {
                 linear: DMat3::from_cols(x, y, z),
                 shift: motion.shift * share,
+                turn_rad: motion.turn_rad.map(|turn| turn * share),
             }
         };
         self.handles

@@ -1,5 +1,7 @@
 //! The lattice as one of the methods.
 
+use std::f64::consts::PI;
+
 use glam::{DVec3, Mat3};
 
 use super::fit::{fit_bytes, fitted, soft_unit};
@@ -133,6 +135,10 @@ impl DeformMethod for Lattice {
 
     fn check_attachment(&self, attachment: &Attachment) -> Result<(), AttachmentRefused> {
         brought::check(self, attachment)
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        PI
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

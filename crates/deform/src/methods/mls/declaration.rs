@@ -1,5 +1,7 @@
 //! Moving least squares as one of the methods.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::bound::{BoundTurning, TURNING_ROW, bind_affine};
 use super::fit::Turning;
 use super::moments::Entry;
@@ -58,6 +60,10 @@ impl DeformMethod for Mls {
             MlsTransforms::Affine => FIELD_ROW,
             MlsTransforms::Similarity | MlsTransforms::Rigid => size_of::<Entry>(),
         }
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        FRAC_PI_2
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

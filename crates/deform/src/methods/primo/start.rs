@@ -5,14 +5,15 @@ use rayon::prelude::*;
 
 use super::bodies::Bodies;
 use crate::handles::Motion;
-use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::handles::blend::{Origin, Screws};
+use crate::handles::screw::{Screw, carried};
 use crate::numerical::rows::CHUNK;
 
 impl Bodies {
     /// Makes the better of two starts the current pose for `motions`.
     pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws { from_rest, onwards, .. } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         if !was_at_rest {
             self.carry(&onwards, Origin::Current);

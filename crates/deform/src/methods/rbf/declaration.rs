@@ -1,5 +1,7 @@
 //! Radial basis functions as one of the methods.
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec3;
 
 use super::Rbf;
@@ -76,6 +78,10 @@ impl DeformMethod for Rbf {
 
     fn handle_row_bytes(&self) -> usize {
         FIELD_ROW
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        FRAC_PI_2
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {

@@ -19,8 +19,9 @@ use crate::budget::Budget;
 use crate::descent::corrections::Corrections;
 use crate::descent::rule::State;
 use crate::handles::Motion;
-use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::handles::blend::{Origin, Screws};
 use crate::handles::offsets::Offsets;
+use crate::handles::screw::{Screw, carried};
 use crate::numerical::sums::Field;
 
 /// Coarse steps for new targets.
@@ -159,7 +160,7 @@ impl ShellsSolver {
         } else if self.has_slopes {
             led.coarse.restrict(&self.current, &self.slopes.energy);
         }
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws { from_rest, onwards, .. } = Screws::of(&self.handles, &self.motions, motions);
         let mut origin = led.coarse.start(motions, STEPS);
         if self.blending.is_some() {
             // The strains that examples give the surface are known at rest.

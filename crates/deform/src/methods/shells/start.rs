@@ -10,7 +10,8 @@ use super::shape::Energy;
 use super::{Blending, Descent, ShellsSolver};
 use crate::descent::prescribed::Prescribed;
 use crate::handles::Motion;
-use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::handles::blend::{Origin, Screws};
+use crate::handles::screw::{Screw, carried};
 use crate::numerical::rows::CHUNK;
 
 /// The number of solutions for a blended shape with a factor in single precision; each corrects the last.
@@ -24,7 +25,11 @@ impl ShellsSolver {
     /// without them.
     pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
         let was_at_rest = self.is_at_rest();
-        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let Screws {
+            from_rest,
+            onwards,
+            may_stay,
+        } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         self.energy.springs.aim(motions);
         let loads = std::mem::take(&mut self.energy.springs.loads);
@@ -39,7 +44,12 @@ impl ShellsSolver {
         ];
         let mut best = (self.current.clone(), Origin::Rest);
         best.0.energy = f64::INFINITY;
-        for (screws, origin) in &starts[..if was_at_rest { 1 } else { 3 }] {
+        let count = match (was_at_rest, may_stay) {
+            (true, _) => 1,
+            (false, false) => 2,
+            (false, true) => 3,
+        };
+        for (screws, origin) in &starts[..count] {
             self.carry(screws, *origin);
             self.energy.evaluate(&mut self.trial, &self.energy.springs);
             if self.trial.energy < best.0.energy {

@@ -1,5 +1,6 @@
 //! Wrinkles as one of the methods.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -81,6 +82,10 @@ impl DeformMethod for Wrinkles {
 
     fn takes_turns(&self) -> bool {
         false
+    }
+
+    fn largest_gap_rad(&self) -> f64 {
+        FRAC_PI_2
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
