@@ -23,6 +23,8 @@ pub struct Animation {
     time: f64,
     /// The frames a second, in [`Animation::FPS_RANGE`].
     fps: f64,
+    /// The number of frames of the sequence that is edited, at least 1; `None` for an edit of one shape.
+    frames: Option<usize>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -80,6 +82,7 @@ impl Default for Animation {
             keys: Arc::default(),
             time: 0.0,
             fps: FPS,
+            frames: None,
         }
     }
 }
@@ -97,9 +100,38 @@ impl Animation {
             keys: Arc::default(),
             time,
             fps,
+            frames: None,
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation
+    }
+
+    /// The same keys for the frames of a sequence, of which one is shown.
+    pub(crate) fn of_sequence(&self, count: usize) -> Self {
+        let animation = Self {
+            frames: Some(count.max(1)),
+            ..self.clone()
+        };
+        animation.at_frame(self.frame_at(self.time).round() as usize)
+    }
+
+    /// The number of frames of the sequence that is edited; `None` for an edit of one shape.
+    pub fn frames(&self) -> Option<usize> {
+        self.frames
+    }
+
+    /// The shown frame of a sequence, from 0.
+    pub fn frame(&self) -> usize {
+        self.frame_at(self.time).round() as usize
+    }
+
+    /// The same animation at another frame, or at the last one if there are fewer.
+    pub(crate) fn at_frame(&self, frame: usize) -> Self {
+        let last = self.frames.map_or(frame, |count| count - 1);
+        Self {
+            time: frame.min(last) as f64 / self.fps,
+            ..self.clone()
+        }
     }
 
     /// The keys, by time.
@@ -117,9 +149,12 @@ impl Animation {
         self.fps
     }
 
-    /// The time of the last key, in seconds; 0 without keys.
+    /// The time of the last key, in seconds, or of a sequence's last frame; 0 without keys.
     pub fn duration(&self) -> f64 {
-        self.keys.last().map_or(0.0, |key| key.time)
+        match self.frames {
+            Some(count) => (count - 1) as f64 / self.fps,
+            None => self.keys.last().map_or(0.0, |key| key.time),
+        }
     }
 
     /// The frame at a time in seconds, a fraction between two frames.
@@ -129,7 +164,12 @@ impl Animation {
 
     /// The time of the frame nearest to a time in seconds.
     pub fn snapped(&self, time: f64) -> f64 {
-        (time.clamp(0.0, Self::LATEST) * self.fps).round() / self.fps
+        let latest = if self.frames.is_some() {
+            self.duration()
+        } else {
+            Self::LATEST
+        };
+        (time.clamp(0.0, latest) * self.fps).round() / self.fps
     }
 
     /// Every key of every handle.
@@ -150,9 +190,17 @@ impl Animation {
         }
     }
 
-    /// The same animation with other frames a second.
+    /// The same animation with other frames a second. Keys keep their times, and those of a sequence their frames.
     pub(crate) fn with_fps(&self, fps: f64) -> Self {
-        Self { fps, ..self.clone() }
+        let mut animation = Self { fps, ..self.clone() };
+        if self.frames.is_some() {
+            let moved = |time: f64| self.frame_at(time).round() / fps;
+            animation.time = moved(self.time);
+            for key in Arc::make_mut(&mut animation.keys) {
+                key.time = moved(key.time);
+            }
+        }
+        animation
     }
 
     /// Adds a key. If there is one at its time, each handle that it names gets its position, and that one's ease stays.

@@ -62,7 +62,7 @@ pub use pose::Pose;
 pub use saved::{SaveMark, SavedAs};
 pub(crate) use sparse::bits_equal;
 pub use state::Document;
-pub(crate) use state::Repainted;
+pub(crate) use state::{FramePlace, Repainted};
 pub(crate) use strength::{Stance, attachment_part};
 pub(crate) use transaction::Transaction;
 pub(crate) use turn::{accumulated, followed, means, rotation_of};

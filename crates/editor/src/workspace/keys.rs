@@ -45,6 +45,10 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
 
 /// Shows a moment, in seconds.
 pub(crate) fn go_to(workspace: &mut Workspace, time: f64) {
+    if workspace.document.animation().frames().is_some() {
+        let frame = workspace.document.animation().frame_at(time);
+        return workspace.want_frame(frame.round() as usize);
+    }
     workspace.step("Go to time", |workspace| workspace.show_moment(time));
 }
 
@@ -169,7 +173,7 @@ impl Workspace {
     /// The drag of the moment has ended: the shape is solved like that of every other frame.
     pub(super) fn end_scrubbing(&mut self, before: &Animation) {
         let document = &mut self.document;
-        let is_scrubbed = before.time() != document.animation().time();
+        let is_scrubbed = before.time() != document.animation().time() && before.frames().is_none();
         if is_scrubbed && document.is_moved() && document.method().solve() != Solve::Direct {
             self.jobs.drop_solves();
             document.unsettle();
@@ -206,7 +210,8 @@ impl Workspace {
     /// Requests the ghosts that the look shows. None is shown while the animation plays, and those of an iterative method
     /// follow once the shape rests.
     pub(crate) fn follow_skins(&mut self, look: &Look, activity: Activity) {
-        let has_keys = self.document.animation().duration() > 0.0;
+        let animation = self.document.animation();
+        let has_keys = animation.duration() > 0.0 && animation.frames().is_none();
         if !(look.timeline && look.skins.shown && has_keys) || self.keys.is_playing() {
             return self.jobs.forget_skins();
         }
@@ -248,6 +253,9 @@ impl Workspace {
     pub(crate) fn tick(&mut self) {
         let now_ms = self.jobs.now_ms();
         let Some(play) = &mut self.keys.play else { return };
+        if self.frames.is_awaited() {
+            return;
+        }
         if !self.document.is_settled() {
             let kinds = [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Solve];
             if !kinds.into_iter().any(|kind| self.jobs.is_busy(kind)) {
@@ -264,7 +272,12 @@ impl Workspace {
         let next = (animation.frame_at(animation.time()) + 1e-6).floor() + 1.0;
         let last = animation.frame_at(animation.duration()) + 1e-6;
         let frame = if next > last { 0.0 } else { next };
-        let time = frame / animation.fps();
-        self.show_moment(time);
+        match animation.frames() {
+            Some(_) => self.want_frame(frame as usize),
+            None => {
+                let time = frame / animation.fps();
+                self.show_moment(time);
+            }
+        }
     }
 }

@@ -11,6 +11,7 @@ mod dirty_colours;
 mod examples;
 mod flow;
 mod flow_play;
+mod frames;
 mod freedom;
 mod handle_values;
 mod handles;

@@ -57,6 +57,7 @@ impl Application {
     pub(in crate::window) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::OpenSequence, Some(path)) => self.open_sequence(path),
             (Purpose::ApplyEdit, Some(path)) => self.ask_to_open(path),
             (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
             (Purpose::SaveAs, Some(path)) => self.save_as(path),
@@ -154,6 +155,7 @@ impl Application {
         match (purpose, self.path()) {
             (
                 Purpose::Open
+                | Purpose::OpenSequence
                 | Purpose::ApplyEdit
                 | Purpose::Append
                 | Purpose::LoadCage
@@ -185,7 +187,12 @@ impl Application {
         let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
         !matches!(
             purpose,
-            Purpose::Open | Purpose::ApplyEdit | Purpose::Append | Purpose::LoadCage | Purpose::AddExample
+            Purpose::Open
+                | Purpose::OpenSequence
+                | Purpose::ApplyEdit
+                | Purpose::Append
+                | Purpose::LoadCage
+                | Purpose::AddExample
         ) && path.is_file()
             && !is_own
     }
@@ -197,19 +204,27 @@ impl Application {
     pub(in crate::window) fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
         match command {
             FileCommand::Open => self.unless_unsaved(Then::Open(None)),
+            FileCommand::OpenSequence => self.unless_unsaved(Then::OpenSequence),
             FileCommand::OpenPath(path) => self.ask_to_open(path),
             FileCommand::NewFromSample => self.unless_unsaved(Then::Sample),
             FileCommand::ShowInFolder => self.show_in_folder(),
             FileCommand::Manual => self.show_page(MANUAL),
             FileCommand::Report => self.show_page(REPORTS),
             FileCommand::About => self.dialogs.about.open = true,
-            FileCommand::Save => self.save(),
-            FileCommand::SaveAs => self.choose(Purpose::SaveAs),
-            FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
-            FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
-                Some(path) => self.save_project_to(path),
-                None => self.choose(Purpose::SaveProject),
-            },
+            FileCommand::Save if !self.is_sequence() => self.save(),
+            FileCommand::SaveAs | FileCommand::SaveMorph => {
+                match (command.unavailable_because(&self.editor), command) {
+                    (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::SaveAs) => self.choose(Purpose::SaveAs),
+                    (None, _) => self.choose(Purpose::SaveMorph),
+                }
+            }
+            FileCommand::Save | FileCommand::SaveProject => {
+                match self.session.open.as_ref().and_then(|open| open.project.clone()) {
+                    Some(path) => self.save_project_to(path),
+                    None => self.choose(Purpose::SaveProject),
+                }
+            }
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
             FileCommand::ExportAnimation => match command.unavailable_because(&self.editor) {
@@ -345,6 +360,7 @@ impl Application {
         match then {
             Then::Open(Some(path)) => self.open(path),
             Then::Open(None) => self.choose(Purpose::Open),
+            Then::OpenSequence => self.choose(Purpose::OpenSequence),
             Then::Sample => self.session.load(Source::Sample, &self.viewport.gpu(), &self.workers),
             Then::Close => self.closing = true,
         }

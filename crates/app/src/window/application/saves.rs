@@ -135,8 +135,14 @@ impl Application {
     pub(in crate::window) fn save_what_is_open(&mut self) {
         match self.project() {
             Some(project) => self.save_project_to(project),
+            None if self.is_sequence() => self.choose(Purpose::SaveProject),
             None => self.save(),
         }
+    }
+
+    /// Returns true if a sequence is open, whose frames are never saved over.
+    pub(in crate::window) fn is_sequence(&self) -> bool {
+        self.session.open.as_ref().is_some_and(|open| open.sequence.is_some())
     }
 
     /// Saves the model in its place, after asking whether the opened file may be replaced.
@@ -311,6 +317,11 @@ impl Application {
         };
         if snapshot.model().weld == weld {
             return;
+        }
+        if self.is_sequence() {
+            return self.fail(
+                "the vertices of a sequence are welded as it was opened: weld those of a single file".to_owned(),
+            );
         }
         let (file, saved) = match &open.mesh.source {
             MeshSource::Sample => (None, None),

@@ -14,6 +14,8 @@ use crate::window::threads::message::{Ground, PictureKind};
 pub enum FileCommand {
     /// Open a file, by dialog.
     Open,
+    /// Open a sequence, by dialog.
+    OpenSequence,
     /// Open this file.
     OpenPath(PathBuf),
     /// Open the built-in sample.
@@ -92,6 +94,9 @@ impl FileCommand {
             Self::Append if editor.document().is_in_work_pose() => {
                 Some("This would change the shape to return to: leave the work pose first.")
             }
+            Self::SaveAs | Self::SaveMorph if editor.document().animation().frames().is_some() => {
+                Some("A sequence has many shapes: save the project instead.")
+            }
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
                 (!has_keys).then_some("There are no keys: set some on the timeline first.")
@@ -132,6 +137,7 @@ impl FileCommand {
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
+            | Self::OpenSequence
             | Self::SaveMorph
             | Self::ExportAnimation
             | Self::ApplyEdit
@@ -157,8 +163,9 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 27] = [
+    pub const LISTED: [Self; 28] = [
         Self::Open,
+        Self::OpenSequence,
         Self::NewFromSample,
         Self::Save,
         Self::SaveAs,
@@ -194,6 +201,7 @@ impl FileCommand {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
+            Self::OpenSequence => "Open sequence…",
             Self::NewFromSample => "New from sample",
             Self::ShowInFolder => "Show in folder",
             Self::Manual => "Manual",
@@ -230,6 +238,7 @@ impl FileCommand {
     pub fn keywords(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "load import file",
+            Self::OpenSequence => "load import frames 4d scan point cache pc2 mdd animation time",
             Self::NewFromSample => "open example creature try",
             Self::ShowInFolder => "file manager explorer finder reveal directory",
             Self::Manual => "help documentation guide",

@@ -9,6 +9,7 @@
 mod animation;
 mod exchange;
 mod fluid;
+mod frames;
 mod freedom;
 mod poses;
 mod reloaded;
@@ -25,6 +26,7 @@ use pliant_mesh::SurfaceVertex;
 
 use glam::DVec3;
 
+pub(crate) use self::frames::FramePlace;
 use super::access::Access;
 use super::content::{Content, Paint, Tips};
 use super::handle::{Handle, HandleId};
