@@ -37,6 +37,8 @@ pub struct KeyFrame {
     pub(crate) handles: BTreeMap<HandleId, Placed>,
     /// The shown curves that some of them follow, of those at rest at that time.
     pub(crate) curves: BTreeMap<HandleId, HandleCurve>,
+    /// The first and the last frame of a sequence over which the key of each handle spreads.
+    pub(crate) spans: BTreeMap<HandleId, [usize; 2]>,
     /// The weights of the method's examples, if they bend the surface.
     pub(crate) weights: Option<Vec<Option<f64>>>,
 }
@@ -139,6 +141,11 @@ impl Animation {
         &self.keys
     }
 
+    /// The keys, to be changed without their times.
+    pub(super) fn keys_mut(&mut self) -> &mut Arc<Vec<KeyFrame>> {
+        &mut self.keys
+    }
+
     /// The shown moment, in seconds.
     pub fn time(&self) -> f64 {
         self.time
@@ -215,6 +222,7 @@ impl Animation {
                 let own = &mut keys[place];
                 own.handles.extend(key.handles);
                 own.curves.extend(key.curves);
+                own.spans.extend(key.spans);
                 own.weights = key.weights.or(own.weights.take());
             }
             Err(place) => keys.insert(place, KeyFrame { time, ..key }),
@@ -235,6 +243,10 @@ impl Animation {
                 .into_iter()
                 .partition(|(id, _)| is_taken(*id));
             key.curves = rest;
+            let (spans, rest) = std::mem::take(&mut key.spans)
+                .into_iter()
+                .partition(|(id, _)| is_taken(*id));
+            key.spans = rest;
             // Weights belong to no handle: they go with the last one.
             let weights = key.weights.take_if(|_| key.handles.is_empty());
             taken.push(KeyFrame {
@@ -242,6 +254,7 @@ impl Animation {
                 ease: key.ease,
                 handles: own,
                 curves,
+                spans,
                 weights,
             });
         }
@@ -255,14 +268,19 @@ impl Animation {
     pub(crate) fn retime(&mut self, ids: &BTreeSet<KeyId>, time: impl Fn(f64) -> f64) -> BTreeSet<KeyId> {
         let mut moved = self.take(ids);
         for key in &mut moved {
+            let before = self.frame_of(key);
             key.time = self.tidy(time(key.time));
+            key.shift_spans(self.frame_of(key) as isize - before as isize);
         }
         self.put_all(moved)
     }
 
     /// Adds keys, and returns the key of every handle in them.
     pub(crate) fn put_all(&mut self, keys: Vec<KeyFrame>) -> BTreeSet<KeyId> {
-        let added = Self::of(keys, self.time, self.fps);
+        let added = Self {
+            frames: self.frames,
+            ..Self::of(keys, self.time, self.fps)
+        };
         let ids = added.ids().collect();
         added.keys.iter().for_each(|key| self.put(key.clone()));
         ids
@@ -302,6 +320,9 @@ impl Animation {
 
     /// A time that is allowed, on the frame that it means.
     fn tidy(&self, time: f64) -> f64 {
+        if self.frames.is_some() {
+            return self.snapped(time);
+        }
         let time = time.abs().min(Self::LATEST);
         let frame = (time * self.fps).round();
         if (time * self.fps - frame).abs() < NEAR {

@@ -25,6 +25,7 @@ mod polar;
 mod pose;
 mod saved;
 mod slid_curve;
+mod spans;
 mod sparse;
 mod state;
 mod strength;

@@ -296,6 +296,9 @@ impl Editor {
     /// The document outside its work pose, which files get.
     fn lasting_document(&self) -> Option<Document> {
         let model = self.workspace.model()?;
+        if self.document().animation().frames().is_some() {
+            return Some(self.workspace.document_at_file());
+        }
         Some(match self.document().work_pose() {
             None => self.document().clone(),
             Some(_) => lasting(self.document(), model),

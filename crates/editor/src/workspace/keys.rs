@@ -4,7 +4,7 @@
 //! that moment, in the same step of the history, and the surface is solved for them from the same start as every other
 //! frame. Handles without keys stay.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use pliant_deform::Solve;
 
@@ -32,12 +32,14 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
     let handles = pose.handles.iter().filter(|(id, _)| is_keyed(id));
     let key = KeyFrame {
         time: document.animation().time(),
-        ease: Ease::default(),
         handles: handles.map(|(id, placed)| (*id, *placed)).collect(),
-        curves: BTreeMap::new(),
+        ..KeyFrame::default()
+    };
+    let key = KeyFrame {
         weights: document
             .examples_name()
             .and_then(|name| pose.weights.get(name).cloned()),
+        ..key
     };
     let name = format!("Key {}", pose.name);
     workspace.edit_keys(name, |animation| Some(animation.put_all(vec![key])));
@@ -61,6 +63,9 @@ pub(crate) fn step_frames(workspace: &mut Workspace, frames: i32) {
         false => (frame + 1e-6).floor(),
     } + f64::from(frames);
     let time = next.max(0.0) / animation.fps();
+    if animation.frames().is_some() {
+        return workspace.step_frames(frames);
+    }
     go_to(workspace, time);
 }
 
@@ -113,8 +118,11 @@ pub(crate) fn paste_keys(workspace: &mut Workspace) {
         return;
     };
     let now = workspace.document.animation().time();
+    let animation = workspace.document.animation();
+    let frames = (animation.frame_at(now) - animation.frame_at(first)).round();
     for key in &mut keys {
         key.time += now - first;
+        key.shift_spans(frames as isize);
         key.handles.retain(|id, _| workspace.document.handle(*id).is_some());
     }
     workspace.edit_keys("Paste keys", |animation| Some(animation.put_all(keys)));
@@ -125,6 +133,14 @@ pub(crate) fn set_key_ease(workspace: &mut Workspace, ease: Ease) {
     let selected = workspace.keys.selected.clone();
     workspace.edit_keys("Change ease", |animation| {
         animation.set_ease(&selected, ease);
+        None
+    });
+}
+
+/// Changes the frames over which a key, and those with the same span, spread.
+pub(crate) fn set_span(workspace: &mut Workspace, id: KeyId, to: [usize; 2]) {
+    workspace.edit_keys("Change span", |animation| {
+        animation.set_span(id, to);
         None
     });
 }
@@ -144,12 +160,16 @@ impl Workspace {
         self.step(name, |workspace| {
             let mut animation = workspace.document.animation().clone();
             let selected = change(&mut animation);
+            animation.tidy_spans();
             let time = animation.time();
             workspace.document.set_animation(animation);
             if let Some(selected) = selected {
                 workspace.keys.selected = selected;
             }
-            workspace.show_moment(time);
+            match workspace.document.animation().frames() {
+                Some(_) => workspace.pose_frame(),
+                None => workspace.show_moment(time),
+            }
         });
     }
 

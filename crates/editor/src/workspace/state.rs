@@ -105,7 +105,7 @@ impl Workspace {
         self.jobs.open(model);
         self.begin_mesh();
         self.keys = KeyWork::default();
-        self.frames.stop();
+        self.frames = FrameWork::default();
     }
 
     /// Returns true if anything was painted at the end of the last event outside a stroke.

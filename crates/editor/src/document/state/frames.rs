@@ -50,4 +50,11 @@ impl Document {
             self.unsettle();
         }
     }
+
+    /// The document at the file's own shape, which is `file`, with its handles at their `places`.
+    pub(crate) fn at_file(&self, file: &Arc<Vec<DVec3>>, places: &BTreeMap<HandleId, FramePlace>) -> Self {
+        let mut document = self.clone();
+        document.put_frame(self.content.animation.frame(), file, places);
+        document
+    }
 }

@@ -3,6 +3,7 @@
 mod rows;
 mod ruler;
 mod scale;
+mod spans;
 mod transport;
 
 use eframe::egui::{self, Panel, Rangef, Rect, ScrollArea, Stroke, vec2};
