@@ -110,10 +110,11 @@ impl Animation {
 
     /// The same keys for the frames of a sequence, of which one is shown.
     pub(crate) fn of_sequence(&self, count: usize) -> Self {
-        let animation = Self {
+        let mut animation = Self {
             frames: Some(count.max(1)),
             ..self.clone()
         };
+        animation.tidy_spans();
         animation.at_frame(self.frame_at(self.time).round() as usize)
     }
 

@@ -24,6 +24,7 @@ pub struct OpenSequence {
     /// The geometry of the mesh.
     rest: Drawn,
     source: Source,
+    fps: f64,
     note: Option<String>,
 }
 
@@ -85,6 +86,7 @@ impl OpenSequence {
             rest: mesh.model.rest(),
             mesh,
             source,
+            fps,
             note,
         })
     }
@@ -92,6 +94,16 @@ impl OpenSequence {
     /// The folder, the point cache or the glTF.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The frames a second at which a glTF's animation was read.
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// Returns true for a point cache, whose mesh is in another file.
+    pub fn is_cache(&self) -> bool {
+        matches!(self.source, Source::Cache(_))
     }
 
     /// The number of frames, at least one.

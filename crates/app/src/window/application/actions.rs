@@ -17,7 +17,7 @@ use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{Answer, Question, Then};
 use crate::window::files::listing;
 use crate::window::files::recovery::left;
-use crate::window::files::save_request::{AnimationToWrite, Content};
+use crate::window::files::save_request::{AnimationToWrite, Content, FramesToWrite};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
 use crate::window::session::{OpenFile, Source};
@@ -69,6 +69,7 @@ impl Application {
             },
             (Purpose::Append, Some(path)) => self.append(path),
             (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
+            (Purpose::ExportFrames, Some(path)) => self.export_frames(&path),
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
@@ -108,6 +109,38 @@ impl Application {
             }
             Err(error) => self.fail(error.to_string()),
         }
+    }
+
+    /// Writes all frames of the open sequence with the edit, off the window's thread.
+    pub fn export_frames(&mut self, path: &Path) {
+        let Some(open) = &self.session.open else { return };
+        let Some(sequence) = &open.sequence else { return };
+        let (place, mesh) = (sequence.path().to_owned(), open.loaded.path.clone());
+        match self.editor.edit_file() {
+            Ok(edit) => {
+                let frames = FramesToWrite {
+                    edit,
+                    cached_mesh: sequence.is_cache().then_some(mesh),
+                    sequence: place,
+                    fps: sequence.fps(),
+                    existing: ExistingFrames::Keep,
+                    watch: Watch::default(),
+                };
+                self.save_copy(path, Content::Frames(Box::new(frames)));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    /// The name under which the frames of the open sequence are exported, beside it.
+    fn suggested_frames(&self) -> Option<PathBuf> {
+        let sequence = self.session.open.as_ref()?.sequence.as_ref()?.path();
+        let mut name = sequence.file_stem()?.to_owned();
+        name.push("-edited");
+        Some(match sequence.extension().filter(|_| sequence.is_file()) {
+            Some(ending) => sequence.with_file_name(name).with_extension(ending),
+            None => sequence.with_file_name(name),
+        })
     }
 
     /// Asks for a file by the system's dialog.
@@ -165,6 +198,7 @@ impl Application {
             ) => path.unwrap_or(Path::new("edited.glb")).to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
+            (Purpose::ExportFrames, _) => self.suggested_frames().unwrap_or_else(|| PathBuf::from("frames")),
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
@@ -227,10 +261,13 @@ impl Application {
             }
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
-            FileCommand::ExportAnimation => match command.unavailable_because(&self.editor) {
-                Some(why) => self.fail(why.to_owned()),
-                None => self.choose(Purpose::ExportAnimation),
-            },
+            FileCommand::ExportAnimation | FileCommand::ExportFrames => {
+                match (command.unavailable_because(&self.editor), command) {
+                    (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::ExportFrames) => self.choose(Purpose::ExportFrames),
+                    (None, _) => self.choose(Purpose::ExportAnimation),
+                }
+            }
             FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
             FileCommand::MergeOptions => self.dialogs.merge.open = true,
             FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {

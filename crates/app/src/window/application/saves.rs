@@ -19,7 +19,7 @@ use crate::window::session::opening::Reload;
 use crate::window::session::{KeepOriginal, Source};
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::shown;
-use pliant_engine::{ExistingFrames, is_project};
+use pliant_engine::is_project;
 use pliant_mesh::WeldOptions;
 
 impl Application {
@@ -197,7 +197,11 @@ impl Application {
         let saved = match written.what {
             WrittenKind::Model { .. } => Some(SavedAs::Model),
             WrittenKind::Project => Some(SavedAs::Project),
-            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation => None,
+            WrittenKind::Picture
+            | WrittenKind::Edit
+            | WrittenKind::Morph
+            | WrittenKind::Animation
+            | WrittenKind::Frames => None,
         };
         if let Some(saved) = saved {
             self.settings.change(|settings| settings.remember(&written.path));
@@ -257,9 +261,7 @@ impl Application {
         let Some(mut request) = self.waiting.unwritten.take() else {
             return;
         };
-        if let Content::Animation(animation) = &mut request.content {
-            animation.frames = ExistingFrames::Replace;
-        }
+        request.content.replace_frames();
         self.session.save_again(*request, &self.workers);
     }
 
@@ -370,6 +372,7 @@ fn purpose(content: &Content) -> Purpose {
         Content::Project(..) => Purpose::SaveProject,
         Content::Edit(_) => Purpose::ExportEdit,
         Content::Animation(_) => Purpose::ExportAnimation,
+        Content::Frames(_) => Purpose::ExportFrames,
         Content::Picture(_) => Purpose::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,

@@ -67,6 +67,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
         FileCommand::ExportAnimation,
+        FileCommand::ExportFrames,
         FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {

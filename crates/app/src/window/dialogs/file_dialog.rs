@@ -69,6 +69,8 @@ fn request(purpose: Purpose) -> Request {
         Purpose::SaveProject => ("Save the project as", Asked::ToSave, "Projects", &["pliant"]),
         Purpose::ExportEdit => ("Export the edit", Asked::ToSave, "Edits", &["json"]),
         Purpose::ExportAnimation => ("Export the animation", Asked::ToSave, "Animations", ANIMATIONS),
+        // A folder, or a file of the sequence's kind.
+        Purpose::ExportFrames => ("Export the frames", Asked::ToSave, "Folders and files", &[]),
         Purpose::SavePicture(_) => ("Save the picture as", Asked::ToSave, "Pictures", &["png"]),
     };
     Request {
@@ -89,9 +91,10 @@ pub fn title(purpose: Purpose) -> &'static str {
 /// the folder browser takes its place.
 pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
     let request = request(purpose);
-    let mut dialog = rfd::AsyncFileDialog::new()
-        .set_title(request.title)
-        .add_filter(request.kind, request.endings);
+    let mut dialog = rfd::AsyncFileDialog::new().set_title(request.title);
+    if !request.endings.is_empty() {
+        dialog = dialog.add_filter(request.kind, request.endings);
+    }
     if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
         dialog = dialog.set_directory(folder);
     }

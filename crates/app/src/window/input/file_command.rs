@@ -36,6 +36,8 @@ pub enum FileCommand {
     ExportEdit,
     /// Write the edit over time.
     ExportAnimation,
+    /// Write the frames of the open sequence with the edit.
+    ExportFrames,
     /// Apply an edit from a file to the open mesh.
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
@@ -90,12 +92,21 @@ impl FileCommand {
         };
         match self {
             Self::Append if editor.view().model.is_none() => Some("Nothing is open: open a file first."),
+            Self::Append if editor.document().animation().frames().is_some() => {
+                Some("A sequence is open, and a part would fit only one frame: open the frame alone.")
+            }
             Self::Append if editor.view().stitching.is_some() => Some(BUSY),
             Self::Append if editor.document().is_in_work_pose() => {
                 Some("This would change the shape to return to: leave the work pose first.")
             }
             Self::SaveAs | Self::SaveMorph if editor.document().animation().frames().is_some() => {
                 Some("A sequence has many shapes: save the project instead.")
+            }
+            Self::ExportAnimation if editor.document().animation().frames().is_some() => {
+                Some("A sequence is open: choose Export frames… instead.")
+            }
+            Self::ExportFrames if editor.document().animation().frames().is_none() => {
+                Some("No sequence is open: choose Open sequence… first.")
             }
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
@@ -140,6 +151,7 @@ impl FileCommand {
             | Self::OpenSequence
             | Self::SaveMorph
             | Self::ExportAnimation
+            | Self::ExportFrames
             | Self::ApplyEdit
             | Self::Weld(_)
             | Self::Append
@@ -163,7 +175,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 28] = [
+    pub const LISTED: [Self; 29] = [
         Self::Open,
         Self::OpenSequence,
         Self::NewFromSample,
@@ -175,6 +187,7 @@ impl FileCommand {
         Self::SaveProjectAs,
         Self::ExportEdit,
         Self::ExportAnimation,
+        Self::ExportFrames,
         Self::ApplyEdit,
         Self::Append,
         Self::MergeOptions,
@@ -228,6 +241,7 @@ impl FileCommand {
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
             Self::ExportAnimation => "Export animation…",
+            Self::ExportFrames => "Export frames…",
             Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -262,6 +276,7 @@ impl FileCommand {
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
             Self::ExportAnimation => "keys timeline gltf glb pc2 mdd frames video bake write",
+            Self::ExportFrames => "sequence folder 4d scan point cache pc2 mdd glb write save",
             Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",

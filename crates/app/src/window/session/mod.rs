@@ -165,7 +165,8 @@ impl Session {
             loaded: Arc::clone(&opened.loaded),
             morph_targets: opened.loaded.scene.morph_targets(),
             drawing: Arc::clone(&opened.drawing),
-            mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone()),
+            mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone())
+                .of_sequence(opened.sequence.as_ref().map(|(sequence, _)| sequence.path().to_owned())),
             project: opened.project.clone(),
             sequence: opened.sequence.as_ref().map(|(sequence, _)| Arc::clone(sequence)),
             in_file: match &opened.path {
@@ -242,7 +243,11 @@ impl Session {
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
-                WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation | WrittenKind::Picture => {}
+                WrittenKind::Edit
+                | WrittenKind::Morph
+                | WrittenKind::Animation
+                | WrittenKind::Frames
+                | WrittenKind::Picture => {}
             }
         }
         self.start_saving(workers);
@@ -303,10 +308,7 @@ impl Session {
         let Some((running, request)) = self.saving.start_next() else {
             return;
         };
-        self.save_watch = match &request.content {
-            Content::Animation(animation) => Some(animation.watch.clone()),
-            _ => None,
-        };
+        self.save_watch = request.content.watch().cloned();
         let stamp = running.stamp;
         let (progress, cancel) = (running.progress.clone(), running.cancel.clone());
         workers.spawn(

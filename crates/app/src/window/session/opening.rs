@@ -133,7 +133,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let mut notes = Vec::new();
     let mut unsaved = None;
     let (mut project, mut recovered) = (None, None);
-    let mut sequence = None;
+    let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
     let (loaded, path, source) = match source {
         Source::Sample => (load_sample(&weld, watch)?, None, MeshSource::Sample),
         Source::File(path) if !pliant_engine::is_project(path) => (
@@ -143,7 +143,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         ),
         Source::Sequence { path, chosen, open } => {
             let mesh = mesh_of(path, open.as_deref())?;
-            sequence = Some((path, chosen.as_deref()));
+            sequence = Some((path.clone(), chosen.as_deref()));
             let loaded = pliant_engine::load(&mesh, &weld, watch)?;
             (loaded, Some(mesh.clone()), MeshSource::File(mesh))
         }
@@ -182,6 +182,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         Source::File(path) | Source::Recovered(path) => {
             let opened = project_file::read(path, watch)?;
             stamps.push((path.clone(), opened.stamp));
+            sequence = opened.sequence.map(|place| (place, None));
             match source {
                 Source::Recovered(_) => {
                     recovered = Some(path.clone());
@@ -212,7 +213,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let sequence = match sequence {
         None => None,
         Some((path, chosen)) => {
-            let sequence = OpenSequence::of(path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
+            let sequence = OpenSequence::of(&path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
             notes.extend(sequence.note().map(str::to_owned));
             let shown = chosen.and_then(|file| sequence.frame_of(file));
             Some((Arc::new(sequence), shown))

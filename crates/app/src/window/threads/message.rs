@@ -177,6 +177,8 @@ pub enum Purpose {
     ExportEdit,
     /// To write the edit over time to.
     ExportAnimation,
+    /// To write the frames of a sequence to: a folder, a point cache or an animation.
+    ExportFrames,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
     /// To put beside the open shape.
