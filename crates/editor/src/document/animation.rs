@@ -18,13 +18,13 @@ const NEAR: f64 = 1e-9;
 #[derive(Clone, PartialEq, Debug)]
 pub struct Animation {
     /// By time; each has a time of its own and names a handle.
-    keys: Arc<Vec<KeyFrame>>,
+    pub(super) keys: Arc<Vec<KeyFrame>>,
     /// The shown moment, in seconds, at least 0.
-    time: f64,
+    pub(super) time: f64,
     /// The frames a second, in [`Animation::FPS_RANGE`].
-    fps: f64,
+    pub(super) fps: f64,
     /// The number of frames of the sequence that is edited, at least 1; `None` for an edit of one shape.
-    frames: Option<usize>,
+    pub(super) frames: Option<usize>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -108,43 +108,9 @@ impl Animation {
         animation
     }
 
-    /// The same keys for the frames of a sequence, of which one is shown.
-    pub(crate) fn of_sequence(&self, count: usize) -> Self {
-        let mut animation = Self {
-            frames: Some(count.max(1)),
-            ..self.clone()
-        };
-        animation.tidy_spans();
-        animation.at_frame(self.frame_at(self.time).round() as usize)
-    }
-
-    /// The number of frames of the sequence that is edited; `None` for an edit of one shape.
-    pub fn frames(&self) -> Option<usize> {
-        self.frames
-    }
-
-    /// The shown frame of a sequence, from 0.
-    pub fn frame(&self) -> usize {
-        self.frame_at(self.time).round() as usize
-    }
-
-    /// The same animation at another frame, or at the last one if there are fewer.
-    pub(crate) fn at_frame(&self, frame: usize) -> Self {
-        let last = self.frames.map_or(frame, |count| count - 1);
-        Self {
-            time: frame.min(last) as f64 / self.fps,
-            ..self.clone()
-        }
-    }
-
     /// The keys, by time.
     pub fn keys(&self) -> &[KeyFrame] {
         &self.keys
-    }
-
-    /// The keys, to be changed without their times.
-    pub(super) fn keys_mut(&mut self) -> &mut Arc<Vec<KeyFrame>> {
-        &mut self.keys
     }
 
     /// The shown moment, in seconds.
@@ -196,19 +162,6 @@ impl Animation {
             time: self.tidy(time),
             ..self.clone()
         }
-    }
-
-    /// The same animation with other frames a second. Keys keep their times, and those of a sequence their frames.
-    pub(crate) fn with_fps(&self, fps: f64) -> Self {
-        let mut animation = Self { fps, ..self.clone() };
-        if self.frames.is_some() {
-            let moved = |time: f64| self.frame_at(time).round() / fps;
-            animation.time = moved(self.time);
-            for key in Arc::make_mut(&mut animation.keys) {
-                key.time = moved(key.time);
-            }
-        }
-        animation
     }
 
     /// Adds a key. If there is one at its time, each handle that it names gets its position, and that one's ease stays.

@@ -25,13 +25,16 @@ impl KeyFrame {
 }
 
 impl Animation {
-    /// The keys with a span, as frames and their keys, that holds this frame for a handle.
-    pub(crate) fn span_at(&self, handle: HandleId, frame: usize) -> Option<([usize; 2], Vec<(usize, &KeyFrame)>)> {
-        let holds = |span: &[usize; 2]| (span[0]..=span[1]).contains(&frame);
-        let spans = self.keys().iter().filter_map(|key| key.span(handle));
-        let span = spans.filter(holds).next()?;
-        let own = self.keys().iter().filter(|key| key.span(handle) == Some(span));
-        Some((span, own.map(|key| (self.frame_of(key), key)).collect()))
+    /// The span of a handle's keys that holds a frame.
+    pub(crate) fn span_at(&self, handle: HandleId, frame: usize) -> Option<[usize; 2]> {
+        let mut spans = self.keys().iter().filter_map(|key| key.span(handle));
+        spans.find(|span| (span[0]..=span[1]).contains(&frame))
+    }
+
+    /// The keys of a handle in one of its spans, with their frames.
+    pub(crate) fn keys_in(&self, handle: HandleId, span: [usize; 2]) -> impl Iterator<Item = (usize, &KeyFrame)> {
+        let own = self.keys().iter().filter(move |key| key.span(handle) == Some(span));
+        own.map(|key| (self.frame_of(key), key))
     }
 
     /// The frame of a sequence's key.
@@ -42,15 +45,16 @@ impl Animation {
     /// Changes the span that holds a key. It goes on to hold all of its keys, and stops before other spans of the handle.
     pub(crate) fn set_span(&mut self, id: KeyId, to: [usize; 2]) {
         let frame = self.frame_at(id.time()).round() as usize;
-        let Some((from, keys)) = self.span_at(id.handle, frame) else {
+        let Some(from) = self.span_at(id.handle, frame) else {
             return;
         };
-        let (first, last) = (keys[0].0, keys[keys.len() - 1].0);
+        let frames = self.keys_in(id.handle, from).map(|(frame, _)| frame);
+        let (first, last) = frames.fold((frame, frame), |(first, last), own| (first.min(own), last.max(own)));
         let others = self.keys().iter().filter_map(|key| key.span(id.handle));
         let others: Vec<[usize; 2]> = others.filter(|span| *span != from).collect();
         let [least, most] = self.room(first, last, &others);
         let to = [to[0].clamp(least, first), to[1].clamp(last, most)];
-        for key in Arc::make_mut(self.keys_mut()) {
+        for key in Arc::make_mut(&mut self.keys) {
             if let Some(span) = key.spans.get_mut(&id.handle).filter(|span| **span == from) {
                 *span = to;
             }
@@ -77,7 +81,7 @@ impl Animation {
                 }
             }
             let frames: Vec<usize> = self.keys().iter().map(|key| self.frame_of(key)).collect();
-            for (key, frame) in Arc::make_mut(self.keys_mut()).iter_mut().zip(frames) {
+            for (key, frame) in Arc::make_mut(&mut self.keys).iter_mut().zip(frames) {
                 match span_of(&spans, frame).filter(|_| key.has(handle)) {
                     Some(span) => key.spans.insert(handle, span),
                     None => key.spans.remove(&handle),

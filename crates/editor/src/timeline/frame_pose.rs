@@ -7,8 +7,11 @@ use crate::document::{Animation, Handle, HandleTransform, KeyFrame, SplitTransfo
 
 /// The frames of the keys that reach a frame: the places of their handles are needed there.
 pub(crate) fn frames_that_reach(animation: &Animation, handles: &[Handle], frame: usize) -> Vec<usize> {
-    let spans = handles.iter().filter_map(|handle| animation.span_at(handle.id, frame));
-    let mut frames: Vec<usize> = spans.flat_map(|(_, keys)| keys).map(|(frame, _)| frame).collect();
+    let spans = handles
+        .iter()
+        .filter_map(|handle| Some((handle.id, animation.span_at(handle.id, frame)?)));
+    let keys = spans.flat_map(|(handle, span)| animation.keys_in(handle, span));
+    let mut frames: Vec<usize> = keys.map(|(frame, _)| frame).collect();
     frames.sort_unstable();
     frames.dedup();
     frames
@@ -22,19 +25,19 @@ pub(crate) fn transform_at(
     (frame, place, pivot): (usize, &HandlePlace, DVec3),
     place_at: impl Fn(usize) -> Option<HandlePlace>,
 ) -> HandleTransform {
-    let span_key = |(frame, key): &(usize, &KeyFrame)| {
+    let span_key = |(frame, key): (usize, &KeyFrame)| {
         let placed = key.handles.get(&handle.id)?;
         Some(SpanKey {
-            frame: *frame,
+            frame,
             ease: key.ease,
             space: KeySpace::Local,
-            place: place_at(*frame)?,
+            place: place_at(frame)?,
             transform: SplitTransform::of(&placed.stance.transform, placed.pivot),
         })
     };
-    let span = animation.span_at(handle.id, frame).map(|(ends, keys)| Span {
+    let span = animation.span_at(handle.id, frame).map(|ends| Span {
         ends,
-        keys: keys.iter().filter_map(span_key).collect(),
+        keys: animation.keys_in(handle.id, ends).filter_map(span_key).collect(),
     });
     let transform = span.and_then(|span| span.at(frame, place));
     transform.map_or(HandleTransform::IDENTITY, |transform| transform.about(pivot))

@@ -6,40 +6,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::frame_work::FrameWork;
 use super::state::Workspace;
-use crate::document::{Aspect, Document, FramePlace, Handle, HandleId, HandleTransform, SavedAs, Version};
+use crate::document::{Aspect, Document, FramePlace, Handle, HandleId, HandleTransform, SavedAs};
 use crate::timeline::{HandlePlace, frames_that_reach, places_of_handles, transform_at};
 
 /// The name of the step to another frame. Steps that follow each other become one.
 const GO_TO_FRAME: &str = "Go to frame";
-
-/// The frames on their way to the document.
-#[derive(Default)]
-pub(crate) struct FrameWork {
-    /// The frame that a person wants to see; `None` if it is shown.
-    wanted: Option<usize>,
-    /// True before the first frame is shown, which is no step of the history.
-    is_beginning: bool,
-    /// A frame that was read, and its displacements from the file's shape.
-    read: Option<(usize, Arc<Vec<DVec3>>)>,
-    /// The places of handles in frames with keys.
-    places: BTreeMap<usize, BTreeMap<HandleId, HandlePlace>>,
-    /// The paint to which these belong.
-    places_of: Option<Version>,
-}
-
-impl FrameWork {
-    /// Forgets the wanted frame.
-    pub(super) fn stop(&mut self) {
-        self.wanted = None;
-        self.read = None;
-    }
-
-    /// Returns true between the wish for a frame and its arrival.
-    pub(super) fn is_awaited(&self) -> bool {
-        self.wanted.is_some()
-    }
-}
 
 impl Workspace {
     /// The opened file is a frame of a sequence of so many frames.

@@ -11,6 +11,7 @@ mod dirty_colours;
 mod examples;
 mod flow;
 mod flow_play;
+mod frame_work;
 mod frames;
 mod freedom;
 mod handle_values;

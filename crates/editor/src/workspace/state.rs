@@ -10,7 +10,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
 use super::flow_play::FlowPlay;
-use super::frames::FrameWork;
+use super::frame_work::FrameWork;
 use super::key_work::KeyWork;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;

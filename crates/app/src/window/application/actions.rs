@@ -198,7 +198,7 @@ impl Application {
             ) => path.unwrap_or(Path::new("edited.glb")).to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
-            (Purpose::ExportFrames, _) => self.suggested_frames().unwrap_or_else(|| PathBuf::from("frames")),
+            (Purpose::ExportFrames, _) => self.suggested_frames().unwrap_or_else(|| PathBuf::from("sequence")),
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),

@@ -6,12 +6,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Document;
+use crate::document::frame_place::FramePlace;
 use crate::document::handle::HandleId;
 use crate::document::handle_transform::HandleTransform;
 use crate::document::version::Aspect;
-
-/// The pivot of a handle on a frame's shape, and its transform there.
-pub(crate) type FramePlace = (DVec3, HandleTransform);
 
 impl Document {
     /// Shows a frame, whose surface is `shape` away from the file's: it becomes the rest shape. Handles go to their

@@ -26,7 +26,6 @@ use pliant_mesh::SurfaceVertex;
 
 use glam::DVec3;
 
-pub(crate) use self::frames::FramePlace;
 use super::access::Access;
 use super::content::{Content, Paint, Tips};
 use super::handle::{Handle, HandleId};
