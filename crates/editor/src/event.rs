@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::Beginning;
@@ -77,6 +77,17 @@ pub enum Event {
         /// Regions, handles and transforms to begin with; `None` begins afresh.
         beginning: Option<Beginning>,
     },
+    /// The opened file is a frame of a sequence of so many frames, at least one: the others are asked for by
+    /// [`SceneView::wanted_frame`](crate::SceneView::wanted_frame).
+    OpenedSequence {
+        /// The number of frames.
+        count: usize,
+        /// The frame to show; `None` is the document's own.
+        shown: Option<usize>,
+    },
+    /// A frame of the sequence was read: the displacements of its surface vertices from the file's shape, or the reason
+    /// why it can't be shown, in one sentence.
+    Frame(usize, Result<Arc<Vec<DVec3>>, String>),
     /// A change of the mesh ([`Editor::take_stitch`](crate::Editor::take_stitch)) has ended: the new mesh, or the reason
     /// why there is none, in one sentence.
     Stitched(Result<Box<NewMesh>, String>),

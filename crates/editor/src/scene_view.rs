@@ -100,6 +100,9 @@ pub struct SceneView<'a> {
     pub selected_keys: &'a BTreeSet<KeyId>,
     /// True while the animation plays.
     pub is_animating: bool,
+    /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
+    /// awaited.
+    pub wanted_frame: Option<usize>,
     /// True while the flow plays.
     pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.

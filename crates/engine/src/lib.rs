@@ -87,7 +87,7 @@ pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
 pub use given::Given;
 pub use inspected::{Inspected, inspect};
 pub use loading::{Loaded, check_not_empty, is_project, load, load_bytes, open};
-pub use sequence::{Sequence, SequenceReport, sequence};
+pub use sequence::{OpenSequence, Sequence, SequenceReport, sequence};
 pub use transfer::{Transfer, transfer, transferred};
 
 pub use pliant_io::{Difference, MorphDeltas, MorphTarget, What};

@@ -368,7 +368,11 @@ impl Desk {
                 SavedAs::Model
             }
             WrittenKind::Project => SavedAs::Project,
-            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation => return true,
+            WrittenKind::Picture
+            | WrittenKind::Edit
+            | WrittenKind::Morph
+            | WrittenKind::Animation
+            | WrittenKind::Frames => return true,
         };
         self.editor.handle(Event::Saved(saved, written.mark));
         if runner.metered(&["settle".into()], || self.run_jobs(JOBS)).is_none() {

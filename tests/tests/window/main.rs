@@ -12,6 +12,7 @@ mod flow;
 mod frame;
 mod mesh_changes;
 mod pose;
+mod sequences;
 mod session;
 mod slow_frames;
 mod timeline;

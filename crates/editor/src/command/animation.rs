@@ -6,7 +6,7 @@ use crate::ease::Ease;
 use crate::view::Skins;
 use crate::workspace::{
     copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
-    step_frames, stretch_keys,
+    set_span, step_frames, stretch_keys,
 };
 
 /// Shows or hides the timeline.
@@ -316,6 +316,19 @@ pub(super) const SET_KEY_EASE: Entry<Ease> = Entry {
     scope: Scope::Document,
     unavailable: |state, _| no_keys(state),
     action: Action::Do(|context, ease| set_key_ease(context.workspace, ease)),
+};
+
+/// Changes the span of a key.
+pub(super) const SET_SPAN: Entry<(KeyId, [usize; 2])> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| {
+        let animation = state.workspace.document.animation();
+        let mut keys = animation.keys().iter();
+        let has_span = keys.any(|key| key.time == id.time() && key.span(id.handle).is_some());
+        outside_work_pose(state).or(unless(has_span, "This key no longer exists."))
+    },
+    action: Action::Do(|context, (id, ends)| set_span(context.workspace, id, ends)),
 };
 
 /// Chooses the number of frames a second.

@@ -64,7 +64,9 @@ pub(super) const APPLY: Entry<()> = Entry {
     scope: Scope::Document,
     unavailable: |state, ()| {
         let is_bent = state.workspace.document.is_displaced();
-        unless(is_bent, "Nothing is bent yet: move a handle first.").or_else(|| state.in_work_pose())
+        unless(is_bent, "Nothing is bent yet: move a handle first.")
+            .or_else(|| state.in_work_pose())
+            .or_else(|| state.in_sequence())
     },
     action: Action::Do(|context, ()| apply_shape(context.workspace)),
 };
@@ -82,7 +84,9 @@ pub(super) const RESET_SHAPE: Entry<()> = Entry {
     unavailable: |state, ()| {
         let document = &state.workspace.document;
         let is_other = document.is_displaced() || document.is_applied();
-        unless(is_other, "The shape is already the file's shape.").or_else(|| state.in_work_pose())
+        unless(is_other, "The shape is already the file's shape.")
+            .or_else(|| state.in_work_pose())
+            .or_else(|| state.in_sequence())
     },
     action: Action::Do(|context, ()| reset_shape(context.workspace)),
 };

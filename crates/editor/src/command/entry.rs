@@ -83,6 +83,15 @@ impl State<'_> {
         )
     }
 
+    /// The reason if a sequence is open, in which the change would fit only one frame.
+    pub(super) fn in_sequence(&self) -> Option<Reason> {
+        let is_single = self.workspace.document.animation().frames().is_none();
+        unless(
+            is_single,
+            "This would fit only one frame of the sequence: open the frame alone, or move handles and set keys.",
+        )
+    }
+
     /// The selected handle.
     pub(super) fn selected(&self) -> Result<&Handle, Reason> {
         let none = "No handle is selected: select one in the list, or paint one.";

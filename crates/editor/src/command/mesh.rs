@@ -12,7 +12,8 @@ use crate::workspace::stitch;
 /// For commands that change the mesh: they need the whole shape, and are done one at a time.
 pub(super) fn when_mesh_may_change<V>(state: &State<'_>, _: &V) -> Option<Reason> {
     let is_still = state.workspace.stitching.is_none();
-    state.unopened().or_else(|| state.in_work_pose()).or(unless(
+    let refused = state.unopened().or_else(|| state.in_work_pose());
+    refused.or_else(|| state.in_sequence()).or(unless(
         is_still,
         "A change of the mesh is under way: wait until it has ended, or stop it.",
     ))

@@ -69,7 +69,8 @@ pub(super) const WORK_POSE: Entry<()> = Entry {
         let document = &state.workspace.document;
         let may_begin = document.is_settled() || document.work_pose().is_some();
         let busy = "The shape is still being solved: wait a moment.";
-        state.unopened().or(unless(may_begin, busy))
+        let refused = state.unopened().or_else(|| state.in_sequence());
+        refused.or(unless(may_begin, busy))
     },
     action: Action::Do(|context, ()| toggle_work_pose(context.workspace)),
 };

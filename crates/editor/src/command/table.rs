@@ -206,6 +206,8 @@ commands! {
     PasteKeys = animation::PASTE_KEYS;
     /// Gives the selected keys another way to the next.
     SetKeyEase(ease: Ease) = animation::SET_KEY_EASE;
+    /// Changes the first and the last frame over which a key of a sequence spreads, with all keys of its span.
+    SetSpan(id: KeyId, ends: [usize; 2]) = animation::SET_SPAN;
     /// Chooses the number of frames a second.
     SetFps(fps: f64) = animation::SET_FPS;
     /// Begins or ends a comparison of the methods on the edit.

@@ -18,11 +18,13 @@ const NEAR: f64 = 1e-9;
 #[derive(Clone, PartialEq, Debug)]
 pub struct Animation {
     /// By time; each has a time of its own and names a handle.
-    keys: Arc<Vec<KeyFrame>>,
+    pub(super) keys: Arc<Vec<KeyFrame>>,
     /// The shown moment, in seconds, at least 0.
-    time: f64,
+    pub(super) time: f64,
     /// The frames a second, in [`Animation::FPS_RANGE`].
-    fps: f64,
+    pub(super) fps: f64,
+    /// The number of frames of the sequence that is edited, at least 1; `None` for an edit of one shape.
+    pub(super) frames: Option<usize>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -35,6 +37,8 @@ pub struct KeyFrame {
     pub(crate) handles: BTreeMap<HandleId, Placed>,
     /// The shown curves that some of them follow, of those at rest at that time.
     pub(crate) curves: BTreeMap<HandleId, HandleCurve>,
+    /// The first and the last frame of a sequence over which the key of each handle spreads.
+    pub(crate) spans: BTreeMap<HandleId, [usize; 2]>,
     /// The weights of the method's examples, if they bend the surface.
     pub(crate) weights: Option<Vec<Option<f64>>>,
 }
@@ -80,6 +84,7 @@ impl Default for Animation {
             keys: Arc::default(),
             time: 0.0,
             fps: FPS,
+            frames: None,
         }
     }
 }
@@ -97,6 +102,7 @@ impl Animation {
             keys: Arc::default(),
             time,
             fps,
+            frames: None,
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation
@@ -117,9 +123,12 @@ impl Animation {
         self.fps
     }
 
-    /// The time of the last key, in seconds; 0 without keys.
+    /// The time of the last key, in seconds, or of a sequence's last frame; 0 without keys.
     pub fn duration(&self) -> f64 {
-        self.keys.last().map_or(0.0, |key| key.time)
+        match self.frames {
+            Some(count) => (count - 1) as f64 / self.fps,
+            None => self.keys.last().map_or(0.0, |key| key.time),
+        }
     }
 
     /// The frame at a time in seconds, a fraction between two frames.
@@ -129,7 +138,12 @@ impl Animation {
 
     /// The time of the frame nearest to a time in seconds.
     pub fn snapped(&self, time: f64) -> f64 {
-        (time.clamp(0.0, Self::LATEST) * self.fps).round() / self.fps
+        let latest = if self.frames.is_some() {
+            self.duration()
+        } else {
+            Self::LATEST
+        };
+        (time.clamp(0.0, latest) * self.fps).round() / self.fps
     }
 
     /// Every key of every handle.
@@ -150,11 +164,6 @@ impl Animation {
         }
     }
 
-    /// The same animation with other frames a second.
-    pub(crate) fn with_fps(&self, fps: f64) -> Self {
-        Self { fps, ..self.clone() }
-    }
-
     /// Adds a key. If there is one at its time, each handle that it names gets its position, and that one's ease stays.
     pub(crate) fn put(&mut self, key: KeyFrame) {
         if key.handles.is_empty() {
@@ -167,6 +176,7 @@ impl Animation {
                 let own = &mut keys[place];
                 own.handles.extend(key.handles);
                 own.curves.extend(key.curves);
+                own.spans.extend(key.spans);
                 own.weights = key.weights.or(own.weights.take());
             }
             Err(place) => keys.insert(place, KeyFrame { time, ..key }),
@@ -187,6 +197,10 @@ impl Animation {
                 .into_iter()
                 .partition(|(id, _)| is_taken(*id));
             key.curves = rest;
+            let (spans, rest) = std::mem::take(&mut key.spans)
+                .into_iter()
+                .partition(|(id, _)| is_taken(*id));
+            key.spans = rest;
             // Weights belong to no handle: they go with the last one.
             let weights = key.weights.take_if(|_| key.handles.is_empty());
             taken.push(KeyFrame {
@@ -194,6 +208,7 @@ impl Animation {
                 ease: key.ease,
                 handles: own,
                 curves,
+                spans,
                 weights,
             });
         }
@@ -207,14 +222,19 @@ impl Animation {
     pub(crate) fn retime(&mut self, ids: &BTreeSet<KeyId>, time: impl Fn(f64) -> f64) -> BTreeSet<KeyId> {
         let mut moved = self.take(ids);
         for key in &mut moved {
+            let before = self.frame_of(key);
             key.time = self.tidy(time(key.time));
+            key.shift_spans(self.frame_of(key) as isize - before as isize);
         }
         self.put_all(moved)
     }
 
     /// Adds keys, and returns the key of every handle in them.
     pub(crate) fn put_all(&mut self, keys: Vec<KeyFrame>) -> BTreeSet<KeyId> {
-        let added = Self::of(keys, self.time, self.fps);
+        let added = Self {
+            frames: self.frames,
+            ..Self::of(keys, self.time, self.fps)
+        };
         let ids = added.ids().collect();
         added.keys.iter().for_each(|key| self.put(key.clone()));
         ids
@@ -254,6 +274,9 @@ impl Animation {
 
     /// A time that is allowed, on the frame that it means.
     fn tidy(&self, time: f64) -> f64 {
+        if self.frames.is_some() {
+            return self.snapped(time);
+        }
         let time = time.abs().min(Self::LATEST);
         let frame = (time * self.fps).round();
         if (time * self.fps - frame).abs() < NEAR {

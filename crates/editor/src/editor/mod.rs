@@ -144,6 +144,11 @@ impl Editor {
             Event::Tick => self.workspace.tick(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
+            Event::OpenedSequence { count, shown } => {
+                self.workspace.open_sequence(count, shown);
+                self.view.look.timeline = true;
+            }
+            Event::Frame(frame, shape) => self.workspace.take_frame(frame, shape),
             Event::Stitched(result) => {
                 self.abort_gesture();
                 take_stitched(&mut self.workspace, result.map(|new| *new));
@@ -160,6 +165,10 @@ impl Editor {
     /// Applies the consequences of an event's changes: jobs, colours, the camera's history.
     fn conclude(&mut self) {
         self.follow_mesh();
+        // Any other gesture is about the shown frame.
+        if self.gesture.is_none() || self.workspace.is_adjusting() {
+            self.workspace.show_wanted_frame();
+        }
         let gesture = self.gesture.as_deref();
         let activity = match gesture.map(Gesture::activity) {
             // Nothing prepares for the pointer between two frames.

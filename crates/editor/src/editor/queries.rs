@@ -41,6 +41,8 @@ impl Editor {
             displacements: document.from_file(),
             original: &workspace.original,
             drawn: match view.look {
+                // A frame's own shape is its rest shape.
+                Look { original: true, .. } if document.animation().frames().is_some() => &document.rest,
                 Look { original: true, .. } => &workspace.original,
                 Look { base: true, .. } => computed.base().unwrap_or(document.from_file()),
                 _ => document.from_file(),
@@ -76,6 +78,7 @@ impl Editor {
             skins: workspace.jobs.skins(),
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
+            wanted_frame: workspace.frame_to_read(),
             is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,
@@ -293,6 +296,9 @@ impl Editor {
     /// The document outside its work pose, which files get.
     fn lasting_document(&self) -> Option<Document> {
         let model = self.workspace.model()?;
+        if self.document().animation().frames().is_some() {
+            return Some(self.workspace.document_at_file());
+        }
         Some(match self.document().work_pose() {
             None => self.document().clone(),
             Some(_) => lasting(self.document(), model),
@@ -381,7 +387,8 @@ impl Editor {
         let is_busy = || JobKind::ALL.iter().any(|&kind| awaited(kind) && jobs.is_busy(kind));
         // A stretch of play that ends becomes a part of the document.
         let is_ending = !(self.workspace.flow.is_still() || self.workspace.flow.is_playing());
-        self.gesture.is_none() && self.waiting.is_empty() && !is_ending && !is_busy()
+        let is_awaiting = self.workspace.awaits_frame();
+        self.gesture.is_none() && self.waiting.is_empty() && !is_ending && !is_awaiting && !is_busy()
     }
 
     /// The revision of the shape that jobs are stamped with, for tests of lateness.

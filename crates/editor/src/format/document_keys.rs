@@ -1,5 +1,7 @@
 //! The keys of a document as those of an edit, and back.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::edit_error::EditError;
@@ -13,6 +15,9 @@ use crate::timeline::{Posed, Timeline};
 
 /// The document's keys of handles, which are in the edit.
 pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
+    if document.animation().frames().is_some() {
+        return frame_entries(document, handles);
+    }
     let entry = |key: &KeyFrame| {
         let named = handles.iter().filter_map(|id| {
             let placed = key.handles.get(id)?;
@@ -35,6 +40,35 @@ pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry
         }
     };
     document.animation().keys().iter().map(entry).collect()
+}
+
+/// The keys at frames of a sequence: one for each span that begins at the same frame.
+fn frame_entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
+    let animation = document.animation();
+    let mut entries: Vec<KeyEntry> = Vec::new();
+    for key in animation.keys() {
+        let frame = animation.frame_of(key) as u32;
+        for id in handles {
+            let (Some(placed), Some(span), Some(handle)) = (key.handles.get(id), key.span(*id), document.handle(*id))
+            else {
+                continue;
+            };
+            let span = Some(span.map(|end| end as u32));
+            let transform = pivoted(placed.stance.transform, Some(placed.pivot));
+            let is_same = |entry: &&mut KeyEntry| entry.frame == Some(frame) && entry.span == span;
+            match entries.iter_mut().find(is_same) {
+                Some(entry) => drop(entry.handles.insert(handle.name.clone(), transform)),
+                None => entries.push(KeyEntry {
+                    frame: Some(frame),
+                    span,
+                    ease: key.ease,
+                    handles: BTreeMap::from([(handle.name.clone(), transform)]),
+                    ..KeyEntry::default()
+                }),
+            }
+        }
+    }
+    entries
 }
 
 /// Gives a document of the edit the edit's keys, and moves its handles to their positions at time 0.
@@ -71,6 +105,7 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
                 .iter()
                 .map(|(handle, curve)| (id(*handle), curve.part(share_at(key.time))))
                 .collect(),
+            spans: BTreeMap::new(),
             weights: key.weights.map(<[_]>::to_vec).map(|mut weights| {
                 if setup.method.examples_bend() {
                     weights

@@ -125,6 +125,7 @@ impl Limbs {
             paint: Arc::new(paint),
             handles,
             rest: None,
+            is_of_file: false,
             tips: Tips::default(),
             loose: Loose::Follow,
             loose_parts: Arc::default(),

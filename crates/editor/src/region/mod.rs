@@ -49,6 +49,8 @@ pub(crate) struct RegionInput<M = Arc<Model>> {
     pub(crate) handles: Vec<(HandleId, Reach)>,
     /// The rest shape's displacements from the file's; `None` if it is the file's.
     pub(crate) rest: Option<Arc<Vec<DVec3>>>,
+    /// True if the region is that of the file's shape, whatever the rest shape is: it holds for all frames of a sequence.
+    pub(crate) is_of_file: bool,
     pub(crate) tips: Tips,
     pub(crate) loose: Loose,
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
@@ -135,7 +137,8 @@ impl Region {
             .rest
             .as_ref()
             .map(|rest| Arc::new(displaced(&input.model.surface, rest)));
-        let surface = rest_surface.as_deref().unwrap_or(&input.model.surface);
+        let measured = rest_surface.as_deref().filter(|_| !input.is_of_file);
+        let surface = measured.unwrap_or(&input.model.surface);
         let locked = input.access.locked_vertices(&input.model);
         let is_locked = |vertex: usize| locked.as_ref().is_some_and(|locked| locked[vertex]);
         let (members, painted) = painted(input, is_locked);
@@ -303,6 +306,7 @@ pub(crate) fn region_input<M>(model: M, document: &Document, contacts: &FileCont
             .map(|handle| (handle.id, handle.reach))
             .collect(),
         rest: document.applied.then(|| Arc::clone(&document.rest)),
+        is_of_file: document.animation.frames().is_some(),
         tips: document.tips,
         loose: document.loose,
         loose_parts: Arc::clone(&document.loose_parts),

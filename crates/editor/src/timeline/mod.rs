@@ -1,10 +1,12 @@
 //! Handles' motions over time: keys, and the transforms between them.
 
 mod filter;
+mod frame_pose;
 mod interpolation;
 mod motion;
 mod numbers;
 mod path;
+mod places;
 mod posed;
 mod present_key;
 mod span;
@@ -12,11 +14,13 @@ mod spline;
 mod track;
 
 pub(crate) use self::filter::quick_motions;
+pub(crate) use self::frame_pose::{frames_that_reach, transform_at};
 pub use self::motion::Timeline;
 pub(crate) use self::motion::values_of;
 pub(crate) use self::numbers::{NumberTrack, Values};
 pub use self::path::BodyMotion;
 pub(crate) use self::path::body_motions;
+pub(crate) use self::places::places_of_handles;
 pub(crate) use self::posed::Posed;
 pub(crate) use self::present_key::present_key;
 pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};

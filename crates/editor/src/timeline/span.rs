@@ -119,6 +119,7 @@ impl SequenceTimeline {
             }
             let (spans, shifts) = (&self.spans[number], &self.shifts[number]);
             let map = spans.iter().find_map(|span| span.at(frame, place));
+            let map = map.map(|transform| transform.affine());
             match shifts.get(&frame).filter(|shift| **shift != DVec3::ZERO) {
                 Some(shift) => Some(DAffine3::from_translation(*shift) * map.unwrap_or(DAffine3::IDENTITY)),
                 None => map,
@@ -143,8 +144,8 @@ impl Span {
         (self.ends[0]..=self.ends[1]).contains(&frame)
     }
 
-    /// The handle's map at a frame where it has this place; `None` if it is not moved.
-    fn at(&self, frame: usize, place: &HandlePlace) -> Option<DAffine3> {
+    /// The handle's transform at a frame where it has this place; `None` if it is not moved.
+    pub(super) fn at(&self, frame: usize, place: &HandlePlace) -> Option<SplitTransform> {
         if !self.holds(frame) {
             return None;
         }
@@ -161,7 +162,7 @@ impl Span {
             (None, Some(key)) => key.faded(place, part(frame, self.ends[0], key.frame)),
             (None, None) => return None,
         };
-        (!is_rest(&transform)).then(|| transform.affine())
+        (!is_rest(&transform)).then_some(transform)
     }
 }
 

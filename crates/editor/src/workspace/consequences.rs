@@ -25,7 +25,8 @@ impl Workspace {
         self.jobs.inspect(asked, &self.document);
         let is_at_rest = activity == Activity::Still && self.document.is_settled();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
-        if is_at_rest && is_bent {
+        // Frames of a sequence may touch themselves: that is no fault of the edit.
+        if is_at_rest && is_bent && self.document.animation().frames().is_none() {
             self.jobs.intersect(&self.document.from_file);
         }
         self.jobs.pump(&self.document, activity);

@@ -4,7 +4,7 @@
 //! that moment, in the same step of the history, and the surface is solved for them from the same start as every other
 //! frame. Handles without keys stay.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use pliant_deform::Solve;
 
@@ -32,12 +32,14 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
     let handles = pose.handles.iter().filter(|(id, _)| is_keyed(id));
     let key = KeyFrame {
         time: document.animation().time(),
-        ease: Ease::default(),
         handles: handles.map(|(id, placed)| (*id, *placed)).collect(),
-        curves: BTreeMap::new(),
+        ..KeyFrame::default()
+    };
+    let key = KeyFrame {
         weights: document
             .examples_name()
             .and_then(|name| pose.weights.get(name).cloned()),
+        ..key
     };
     let name = format!("Key {}", pose.name);
     workspace.edit_keys(name, |animation| Some(animation.put_all(vec![key])));
@@ -45,6 +47,10 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
 
 /// Shows a moment, in seconds.
 pub(crate) fn go_to(workspace: &mut Workspace, time: f64) {
+    if workspace.document.animation().frames().is_some() {
+        let frame = workspace.document.animation().frame_at(time);
+        return workspace.want_frame(frame.round() as usize);
+    }
     workspace.step("Go to time", |workspace| workspace.show_moment(time));
 }
 
@@ -57,6 +63,9 @@ pub(crate) fn step_frames(workspace: &mut Workspace, frames: i32) {
         false => (frame + 1e-6).floor(),
     } + f64::from(frames);
     let time = next.max(0.0) / animation.fps();
+    if animation.frames().is_some() {
+        return workspace.step_frames(frames);
+    }
     go_to(workspace, time);
 }
 
@@ -109,8 +118,11 @@ pub(crate) fn paste_keys(workspace: &mut Workspace) {
         return;
     };
     let now = workspace.document.animation().time();
+    let animation = workspace.document.animation();
+    let frames = (animation.frame_at(now) - animation.frame_at(first)).round();
     for key in &mut keys {
         key.time += now - first;
+        key.shift_spans(frames as isize);
         key.handles.retain(|id, _| workspace.document.handle(*id).is_some());
     }
     workspace.edit_keys("Paste keys", |animation| Some(animation.put_all(keys)));
@@ -121,6 +133,14 @@ pub(crate) fn set_key_ease(workspace: &mut Workspace, ease: Ease) {
     let selected = workspace.keys.selected.clone();
     workspace.edit_keys("Change ease", |animation| {
         animation.set_ease(&selected, ease);
+        None
+    });
+}
+
+/// Changes the frames over which a key, and those with the same span, spread.
+pub(crate) fn set_span(workspace: &mut Workspace, id: KeyId, to: [usize; 2]) {
+    workspace.edit_keys("Change span", |animation| {
+        animation.set_span(id, to);
         None
     });
 }
@@ -140,12 +160,16 @@ impl Workspace {
         self.step(name, |workspace| {
             let mut animation = workspace.document.animation().clone();
             let selected = change(&mut animation);
+            animation.tidy_spans();
             let time = animation.time();
             workspace.document.set_animation(animation);
             if let Some(selected) = selected {
                 workspace.keys.selected = selected;
             }
-            workspace.show_moment(time);
+            match workspace.document.animation().frames() {
+                Some(_) => workspace.pose_frame(),
+                None => workspace.show_moment(time),
+            }
         });
     }
 
@@ -169,7 +193,7 @@ impl Workspace {
     /// The drag of the moment has ended: the shape is solved like that of every other frame.
     pub(super) fn end_scrubbing(&mut self, before: &Animation) {
         let document = &mut self.document;
-        let is_scrubbed = before.time() != document.animation().time();
+        let is_scrubbed = before.time() != document.animation().time() && before.frames().is_none();
         if is_scrubbed && document.is_moved() && document.method().solve() != Solve::Direct {
             self.jobs.drop_solves();
             document.unsettle();
@@ -206,7 +230,8 @@ impl Workspace {
     /// Requests the ghosts that the look shows. None is shown while the animation plays, and those of an iterative method
     /// follow once the shape rests.
     pub(crate) fn follow_skins(&mut self, look: &Look, activity: Activity) {
-        let has_keys = self.document.animation().duration() > 0.0;
+        let animation = self.document.animation();
+        let has_keys = animation.duration() > 0.0 && animation.frames().is_none();
         if !(look.timeline && look.skins.shown && has_keys) || self.keys.is_playing() {
             return self.jobs.forget_skins();
         }
@@ -248,6 +273,9 @@ impl Workspace {
     pub(crate) fn tick(&mut self) {
         let now_ms = self.jobs.now_ms();
         let Some(play) = &mut self.keys.play else { return };
+        if self.frames.is_awaited() {
+            return;
+        }
         if !self.document.is_settled() {
             let kinds = [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Solve];
             if !kinds.into_iter().any(|kind| self.jobs.is_busy(kind)) {
@@ -264,7 +292,12 @@ impl Workspace {
         let next = (animation.frame_at(animation.time()) + 1e-6).floor() + 1.0;
         let last = animation.frame_at(animation.duration()) + 1e-6;
         let frame = if next > last { 0.0 } else { next };
-        let time = frame / animation.fps();
-        self.show_moment(time);
+        match animation.frames() {
+            Some(_) => self.want_frame(frame as usize),
+            None => {
+                let time = frame / animation.fps();
+                self.show_moment(time);
+            }
+        }
     }
 }

@@ -11,6 +11,8 @@ mod dirty_colours;
 mod examples;
 mod flow;
 mod flow_play;
+mod frame_work;
+mod frames;
 mod freedom;
 mod handle_values;
 mod handles;
@@ -52,7 +54,7 @@ pub(crate) use handles::{
 };
 pub(crate) use keys::{
     copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
-    step_frames, stretch_keys,
+    set_span, step_frames, stretch_keys,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

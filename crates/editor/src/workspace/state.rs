@@ -10,6 +10,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
 use super::flow_play::FlowPlay;
+use super::frame_work::FrameWork;
 use super::key_work::KeyWork;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
@@ -50,6 +51,7 @@ pub(crate) struct Workspace {
     pub(super) painted: (bool, Version),
     pub(crate) flow: FlowPlay,
     pub(crate) keys: KeyWork,
+    pub(super) frames: FrameWork,
     /// The step of an active widget.
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
@@ -82,6 +84,7 @@ impl Workspace {
             shape_revision: 0,
             flow: FlowPlay::default(),
             keys: KeyWork::default(),
+            frames: FrameWork::default(),
             adjusting: None,
             mirroring: None,
             symmetry: Symmetry::None,
@@ -102,6 +105,7 @@ impl Workspace {
         self.jobs.open(model);
         self.begin_mesh();
         self.keys = KeyWork::default();
+        self.frames = FrameWork::default();
     }
 
     /// Returns true if anything was painted at the end of the last event outside a stroke.
@@ -229,6 +233,7 @@ impl Workspace {
             return self.flow.drop_stretch();
         }
         self.pause_keys();
+        self.frames.stop();
         self.jobs.drop_solves();
         let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
@@ -243,6 +248,7 @@ impl Workspace {
     /// Redoes the last undone step.
     pub(crate) fn redo(&mut self) {
         self.pause_keys();
+        self.frames.stop();
         self.jobs.drop_solves();
         self.flow.drop_stretch();
         self.history.redo(&mut self.document);
@@ -255,6 +261,7 @@ impl Workspace {
     /// Goes back or forth to the state after this many steps of the history.
     pub(crate) fn go_to_step(&mut self, steps: usize) {
         self.pause_keys();
+        self.frames.stop();
         self.jobs.drop_solves();
         self.flow.drop_stretch();
         while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}

@@ -33,6 +33,7 @@ mod project;
 mod reach;
 mod rig;
 mod rigid_paint;
+mod sequences;
 mod session;
 mod smoothing;
 mod snapped_parts;

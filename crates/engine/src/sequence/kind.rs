@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use pliant_io::{Format, PointCacheFormat};
+use pliant_io::PointCacheFormat;
 
 use super::folder::Folder;
+use super::open::is_gltf;
 use super::source::cache_format;
 use crate::EngineError;
 use crate::animate::check_output;
@@ -43,8 +44,7 @@ impl Kind {
                         .to_owned(),
                 ));
             }
-            let format = Format::of_name(&job.file.to_string_lossy());
-            if matches!(format, Ok(Format::Glb | Format::Gltf)) && job.file.is_file() {
+            if is_gltf(job.file) {
                 check_output(job.output)?;
                 let mesh = job.file.to_owned();
                 return Ok(Self::Animation { mesh });

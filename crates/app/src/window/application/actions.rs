@@ -17,7 +17,7 @@ use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{Answer, Question, Then};
 use crate::window::files::listing;
 use crate::window::files::recovery::left;
-use crate::window::files::save_request::{AnimationToWrite, Content};
+use crate::window::files::save_request::{AnimationToWrite, Content, FramesToWrite};
 use crate::window::input::event_queue::EventQueue;
 use crate::window::input::file_command::FileCommand;
 use crate::window::session::{OpenFile, Source};
@@ -57,6 +57,7 @@ impl Application {
     pub(in crate::window) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::OpenSequence, Some(path)) => self.open_sequence(path),
             (Purpose::ApplyEdit, Some(path)) => self.ask_to_open(path),
             (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
             (Purpose::SaveAs, Some(path)) => self.save_as(path),
@@ -68,6 +69,7 @@ impl Application {
             },
             (Purpose::Append, Some(path)) => self.append(path),
             (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
+            (Purpose::ExportFrames, Some(path)) => self.export_frames(&path),
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
@@ -107,6 +109,38 @@ impl Application {
             }
             Err(error) => self.fail(error.to_string()),
         }
+    }
+
+    /// Writes all frames of the open sequence with the edit, off the window's thread.
+    pub fn export_frames(&mut self, path: &Path) {
+        let Some(open) = &self.session.open else { return };
+        let Some(sequence) = &open.sequence else { return };
+        let (place, mesh) = (sequence.path().to_owned(), open.loaded.path.clone());
+        match self.editor.edit_file() {
+            Ok(edit) => {
+                let frames = FramesToWrite {
+                    edit,
+                    cached_mesh: sequence.is_cache().then_some(mesh),
+                    sequence: place,
+                    fps: sequence.fps(),
+                    existing: ExistingFrames::Keep,
+                    watch: Watch::default(),
+                };
+                self.save_copy(path, Content::Frames(Box::new(frames)));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    /// The name under which the frames of the open sequence are exported, beside it.
+    fn suggested_frames(&self) -> Option<PathBuf> {
+        let sequence = self.session.open.as_ref()?.sequence.as_ref()?.path();
+        let mut name = sequence.file_stem()?.to_owned();
+        name.push("-edited");
+        Some(match sequence.extension().filter(|_| sequence.is_file()) {
+            Some(ending) => sequence.with_file_name(name).with_extension(ending),
+            None => sequence.with_file_name(name),
+        })
     }
 
     /// Asks for a file by the system's dialog.
@@ -154,6 +188,7 @@ impl Application {
         match (purpose, self.path()) {
             (
                 Purpose::Open
+                | Purpose::OpenSequence
                 | Purpose::ApplyEdit
                 | Purpose::Append
                 | Purpose::LoadCage
@@ -163,6 +198,7 @@ impl Application {
             ) => path.unwrap_or(Path::new("edited.glb")).to_owned(),
             (Purpose::SaveMorph, Some(path)) => beside(path, "morph.glb"),
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
+            (Purpose::ExportFrames, _) => self.suggested_frames().unwrap_or_else(|| PathBuf::from("sequence")),
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
@@ -185,7 +221,12 @@ impl Application {
         let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
         !matches!(
             purpose,
-            Purpose::Open | Purpose::ApplyEdit | Purpose::Append | Purpose::LoadCage | Purpose::AddExample
+            Purpose::Open
+                | Purpose::OpenSequence
+                | Purpose::ApplyEdit
+                | Purpose::Append
+                | Purpose::LoadCage
+                | Purpose::AddExample
         ) && path.is_file()
             && !is_own
     }
@@ -197,25 +238,36 @@ impl Application {
     pub(in crate::window) fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
         match command {
             FileCommand::Open => self.unless_unsaved(Then::Open(None)),
+            FileCommand::OpenSequence => self.unless_unsaved(Then::OpenSequence),
             FileCommand::OpenPath(path) => self.ask_to_open(path),
             FileCommand::NewFromSample => self.unless_unsaved(Then::Sample),
             FileCommand::ShowInFolder => self.show_in_folder(),
             FileCommand::Manual => self.show_page(MANUAL),
             FileCommand::Report => self.show_page(REPORTS),
             FileCommand::About => self.dialogs.about.open = true,
-            FileCommand::Save => self.save(),
-            FileCommand::SaveAs => self.choose(Purpose::SaveAs),
-            FileCommand::SaveMorph => self.choose(Purpose::SaveMorph),
-            FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
-                Some(path) => self.save_project_to(path),
-                None => self.choose(Purpose::SaveProject),
-            },
+            FileCommand::Save if !self.is_sequence() => self.save(),
+            FileCommand::SaveAs | FileCommand::SaveMorph => {
+                match (command.unavailable_because(&self.editor), command) {
+                    (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::SaveAs) => self.choose(Purpose::SaveAs),
+                    (None, _) => self.choose(Purpose::SaveMorph),
+                }
+            }
+            FileCommand::Save | FileCommand::SaveProject => {
+                match self.session.open.as_ref().and_then(|open| open.project.clone()) {
+                    Some(path) => self.save_project_to(path),
+                    None => self.choose(Purpose::SaveProject),
+                }
+            }
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
-            FileCommand::ExportAnimation => match command.unavailable_because(&self.editor) {
-                Some(why) => self.fail(why.to_owned()),
-                None => self.choose(Purpose::ExportAnimation),
-            },
+            FileCommand::ExportAnimation | FileCommand::ExportFrames => {
+                match (command.unavailable_because(&self.editor), command) {
+                    (Some(why), _) => self.fail(why.to_owned()),
+                    (None, FileCommand::ExportFrames) => self.choose(Purpose::ExportFrames),
+                    (None, _) => self.choose(Purpose::ExportAnimation),
+                }
+            }
             FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
             FileCommand::MergeOptions => self.dialogs.merge.open = true,
             FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
@@ -345,6 +397,7 @@ impl Application {
         match then {
             Then::Open(Some(path)) => self.open(path),
             Then::Open(None) => self.choose(Purpose::Open),
+            Then::OpenSequence => self.choose(Purpose::OpenSequence),
             Then::Sample => self.session.load(Source::Sample, &self.viewport.gpu(), &self.workers),
             Then::Close => self.closing = true,
         }

@@ -57,6 +57,11 @@ impl Application {
                     }
                     None => {}
                 },
+                Message::Frame(stamp, frame, shape) => {
+                    if let Some(shape) = self.session.take_frame(stamp, frame, shape) {
+                        self.editor.handle(Event::Frame(frame, shape));
+                    }
+                }
                 Message::Stitched(stamp, result) => self.take_stitched(stamp, result),
                 Message::Written(stamp, result) => self.written(stamp, result),
                 Message::OriginalFound(path, kept) => {
@@ -116,10 +121,12 @@ impl Application {
             unsaved,
             project,
             path,
+            sequence,
             ..
         } = opened;
         let is_file = path.is_some() || project.is_some();
-        if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
+        let place = sequence.as_ref().map(|(sequence, _)| sequence.path().to_owned());
+        if let Some(path) = project.or(place).or(path).filter(|_| recovered.is_none()) {
             self.settings.change(|settings| settings.remember(&path));
             self.recent_pictures.want(&path);
         }
@@ -139,6 +146,12 @@ impl Application {
             name,
             beginning,
         });
+        if let Some((sequence, shown)) = sequence {
+            self.editor.handle(Event::OpenedSequence {
+                count: sequence.count(),
+                shown,
+            });
+        }
         self.show_vertex_colours(has_vertex_colours);
         if let Some(needed) = unsaved {
             self.editor.handle(Event::Recovered(needed));

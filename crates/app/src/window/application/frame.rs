@@ -59,6 +59,7 @@ impl eframe::App for Application {
             self.editor.handle(event);
             context.request_repaint();
         }
+        self.follow_frames(&context);
         self.follow_mesh();
         self.begin_stitching();
         if let Some(command) = file_command {

@@ -46,7 +46,7 @@ use super::viewport::before::OriginalView;
 use super::viewport::beside::ViewsBeside;
 use super::widgets::{icon, theme};
 use crate::files::names::file_name;
-use crate::window::session::{Session, Source};
+use crate::window::session::{Session, Source, meant_by};
 use crate::window::viewport::pose_queue::PoseQueue;
 use crate::window::viewport::shown::Shown;
 use pliant_engine::EngineError;
@@ -310,7 +310,14 @@ impl Application {
             .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let mesh = self.session.open.as_ref().map(|open| &open.mesh.source);
         let source = match (is_edit, mesh) {
-            (false, _) => Source::File(path),
+            (false, mesh) => match (Source::file(path), mesh) {
+                (Source::Sequence { path, chosen, .. }, Some(MeshSource::File(open))) => Source::Sequence {
+                    path,
+                    chosen,
+                    open: Some(open.clone()),
+                },
+                (source, _) => source,
+            },
             (true, Some(MeshSource::File(file))) => Source::Edited {
                 file: file.clone(),
                 edit: path,
@@ -323,6 +330,30 @@ impl Application {
             }
         };
         self.session.load(source, &self.viewport.gpu(), &self.workers);
+    }
+
+    /// Opens the sequence that a person means by a file of it.
+    pub fn open_sequence(&mut self, file: PathBuf) {
+        let source = Source::Sequence {
+            path: meant_by(&file),
+            chosen: Some(file),
+            open: self.session.open.as_ref().and_then(|open| match &open.mesh.source {
+                MeshSource::File(open) => Some(open.clone()),
+                _ => None,
+            }),
+        };
+        self.session.load(source, &self.viewport.gpu(), &self.workers);
+    }
+
+    /// Gives the editor the frame of the sequence that it asks for, once it was read.
+    pub(super) fn follow_frames(&mut self, context: &egui::Context) {
+        let wanted = self.editor.view().wanted_frame;
+        if let Some(frame) = wanted
+            && let Some(shape) = self.session.frame(frame, &self.workers)
+        {
+            self.editor.handle(Event::Frame(frame, Ok(shape)));
+            context.request_repaint();
+        }
     }
 
     /// Writes unsaved work where the next session finds it.

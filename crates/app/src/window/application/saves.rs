@@ -19,7 +19,7 @@ use crate::window::session::opening::Reload;
 use crate::window::session::{KeepOriginal, Source};
 use crate::window::threads::message::{Ground, PictureKind, Purpose};
 use pliant_engine::files::shown;
-use pliant_engine::{ExistingFrames, is_project};
+use pliant_engine::is_project;
 use pliant_mesh::WeldOptions;
 
 impl Application {
@@ -135,8 +135,14 @@ impl Application {
     pub(in crate::window) fn save_what_is_open(&mut self) {
         match self.project() {
             Some(project) => self.save_project_to(project),
+            None if self.is_sequence() => self.choose(Purpose::SaveProject),
             None => self.save(),
         }
+    }
+
+    /// Returns true if a sequence is open, whose frames are never saved over.
+    pub(in crate::window) fn is_sequence(&self) -> bool {
+        self.session.open.as_ref().is_some_and(|open| open.sequence.is_some())
     }
 
     /// Saves the model in its place, after asking whether the opened file may be replaced.
@@ -191,7 +197,11 @@ impl Application {
         let saved = match written.what {
             WrittenKind::Model { .. } => Some(SavedAs::Model),
             WrittenKind::Project => Some(SavedAs::Project),
-            WrittenKind::Picture | WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation => None,
+            WrittenKind::Picture
+            | WrittenKind::Edit
+            | WrittenKind::Morph
+            | WrittenKind::Animation
+            | WrittenKind::Frames => None,
         };
         if let Some(saved) = saved {
             self.settings.change(|settings| settings.remember(&written.path));
@@ -251,9 +261,7 @@ impl Application {
         let Some(mut request) = self.waiting.unwritten.take() else {
             return;
         };
-        if let Content::Animation(animation) = &mut request.content {
-            animation.frames = ExistingFrames::Replace;
-        }
+        request.content.replace_frames();
         self.session.save_again(*request, &self.workers);
     }
 
@@ -312,6 +320,11 @@ impl Application {
         if snapshot.model().weld == weld {
             return;
         }
+        if self.is_sequence() {
+            return self.fail(
+                "the vertices of a sequence are welded as it was opened: weld those of a single file".to_owned(),
+            );
+        }
         let (file, saved) = match &open.mesh.source {
             MeshSource::Sample => (None, None),
             MeshSource::File(file) => (Some(file.clone()), None),
@@ -359,6 +372,7 @@ fn purpose(content: &Content) -> Purpose {
         Content::Project(..) => Purpose::SaveProject,
         Content::Edit(_) => Purpose::ExportEdit,
         Content::Animation(_) => Purpose::ExportAnimation,
+        Content::Frames(_) => Purpose::ExportFrames,
         Content::Picture(_) => Purpose::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,

@@ -19,7 +19,9 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
             "Hold the left button over the part to move, or press 7 and drag a limb. Turn the view with Alt, or drag \
              beside the model.",
         )
-    } else if !editor.document().is_displaced() && !editor.document().is_applied() {
+    } else if !editor.document().is_displaced()
+        && (!editor.document().is_applied() || editor.document().animation().frames().is_some())
+    {
         (
             2,
             "Drag it",

@@ -57,6 +57,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
     let is_open = editor.view().model.is_some();
     for command in [
         FileCommand::Open,
+        FileCommand::OpenSequence,
         FileCommand::NewFromSample,
         FileCommand::Save,
         FileCommand::SaveAs,
@@ -66,6 +67,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
         FileCommand::ExportAnimation,
+        FileCommand::ExportFrames,
         FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {
@@ -82,7 +84,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         }
         let always = matches!(
             command,
-            FileCommand::Open | FileCommand::NewFromSample | FileCommand::Quit
+            FileCommand::Open | FileCommand::OpenSequence | FileCommand::NewFromSample | FileCommand::Quit
         );
         let mut button = egui::Button::new(command.name());
         if let Some(shortcut) = command.shortcut() {

@@ -17,15 +17,22 @@ use pliant_io::Format;
 const MODELS: &[&str] = &Format::EXTENSIONS;
 
 /// The kinds of mesh file, and projects.
-const MODELS_AND_PROJECTS: &[&str] = &{
-    let mut endings = ["pliant"; Format::EXTENSIONS.len() + 1];
+const MODELS_AND_PROJECTS: &[&str] = &after_models::<{ Format::EXTENSIONS.len() + 1 }>("pliant", "pliant");
+
+/// The kinds of mesh file, and point caches.
+const MODELS_AND_CACHES: &[&str] = &after_models::<{ Format::EXTENSIONS.len() + 2 }>("pc2", "mdd");
+
+/// The kinds of mesh file, and after them `next` and `last`, as far as there is room.
+const fn after_models<const COUNT: usize>(next: &'static str, last: &'static str) -> [&'static str; COUNT] {
+    let mut endings = [last; COUNT];
     let mut place = 0;
     while place < Format::EXTENSIONS.len() {
         endings[place] = Format::EXTENSIONS[place];
         place += 1;
     }
+    endings[place] = next;
     endings
-};
+}
 
 /// The extensions of animations: one file, or with `-####` in its name one for each frame.
 const ANIMATIONS: &[&str] = &["glb", "gltf", "pc2", "mdd", "obj", "ply", "stl", "off", "3mf", "usdz"];
@@ -47,6 +54,12 @@ fn request(purpose: Purpose) -> Request {
             "Models and projects",
             MODELS_AND_PROJECTS,
         ),
+        Purpose::OpenSequence => (
+            "Open a sequence: one of its frames, or its point cache",
+            Asked::ToOpen,
+            "Models and point caches",
+            MODELS_AND_CACHES,
+        ),
         Purpose::ApplyEdit => ("Apply an edit", Asked::ToOpen, "Edits", &["json"]),
         Purpose::Append => ("Append a file", Asked::ToOpen, "Models", MODELS),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),
@@ -56,6 +69,8 @@ fn request(purpose: Purpose) -> Request {
         Purpose::SaveProject => ("Save the project as", Asked::ToSave, "Projects", &["pliant"]),
         Purpose::ExportEdit => ("Export the edit", Asked::ToSave, "Edits", &["json"]),
         Purpose::ExportAnimation => ("Export the animation", Asked::ToSave, "Animations", ANIMATIONS),
+        // A folder, or a file of the sequence's kind.
+        Purpose::ExportFrames => ("Export the frames", Asked::ToSave, "Folders and files", &[]),
         Purpose::SavePicture(_) => ("Save the picture as", Asked::ToSave, "Pictures", &["png"]),
     };
     Request {
@@ -76,9 +91,10 @@ pub fn title(purpose: Purpose) -> &'static str {
 /// the folder browser takes its place.
 pub fn choose(purpose: Purpose, suggested: &Path, workers: &Workers) {
     let request = request(purpose);
-    let mut dialog = rfd::AsyncFileDialog::new()
-        .set_title(request.title)
-        .add_filter(request.kind, request.endings);
+    let mut dialog = rfd::AsyncFileDialog::new().set_title(request.title);
+    if !request.endings.is_empty() {
+        dialog = dialog.add_filter(request.kind, request.endings);
+    }
     if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
         dialog = dialog.set_directory(folder);
     }

@@ -71,6 +71,8 @@ pub enum ChangedOffer {
 pub enum Then {
     /// Open this file, or ask for one.
     Open(Option<PathBuf>),
+    /// Ask for a sequence to open.
+    OpenSequence,
     /// Open the built-in sample.
     Sample,
     /// Close the window.
@@ -300,6 +302,7 @@ fn discard(ui: &mut egui::Ui, then: &Then, name: &str, answer: &mut Option<Answe
     let end = match then {
         Then::Open(_) | Then::Sample => "Opening another file discards them.",
         Then::Close => "Closing the window discards them.",
+        Then::OpenSequence => "Opening a sequence discards them.",
     };
     ui.label(format!("{} does not have your last changes. {end}", quoted(name)));
     ui.add_space(8.0);

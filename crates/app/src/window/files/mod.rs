@@ -13,3 +13,4 @@ pub(in crate::window) mod save_wish;
 pub(in crate::window) mod settings;
 pub(in crate::window) mod small_pictures;
 pub(in crate::window) mod writing;
+mod written_frames;

@@ -41,13 +41,13 @@ pub fn stage(
         }
     };
     let name = beside.is_some().then(|| file_name(&mesh.loaded.path));
-    assembled(snapshot, &mesh.loaded, (mesh_path, name), beside, path, staging)
+    assembled(snapshot, mesh, (mesh_path, name), beside, path, staging)
 }
 
 /// A project that names its mesh by a path and, if that is not its own name, by the name that people know.
 fn assembled(
     snapshot: &Snapshot,
-    loaded: &Loaded,
+    mesh: &RestMesh,
     (mesh_path, name): (Option<String>, Option<String>),
     beside: Option<(PathBuf, Option<Staged>)>,
     path: &Path,
@@ -60,15 +60,17 @@ fn assembled(
     });
     // Kept dye lies over the mesh's own colours, so it must not come upon a file that has it already.
     let project = match snapshot.kept_dye() {
-        Some(_) => project.over_colours(colour_hash(loaded)),
+        Some(_) => project.over_colours(colour_hash(&mesh.loaded)),
         None => project,
     };
+    let sequence = mesh.sequence.as_ref();
+    let project = project.of_sequence(sequence.map(|place| relative(place, files::folder_of(path))));
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
-    let (kept, mesh) = beside.unzip();
+    let (kept, staged_mesh) = beside.unzip();
     Ok(StagedProject {
         // The mesh comes first: the project must not exist without it.
-        staged: match mesh.flatten() {
-            Some(mesh) => mesh.and(staged),
+        staged: match staged_mesh.flatten() {
+            Some(staged_mesh) => staged_mesh.and(staged),
             None => staged,
         },
         kept,
@@ -98,7 +100,7 @@ pub fn write_with_mesh(
     let stands_at = kept.map(|kept| relative(model.unwrap_or(kept), files::folder_of(path)));
     // If the model has a file, its path says which.
     let name = (beside.is_some() && model.is_none()).then(|| file_name(&mesh.loaded.path));
-    let StagedProject { staged, kept } = assembled(snapshot, &mesh.loaded, (stands_at, name), beside, path, &staging)?;
+    let StagedProject { staged, kept } = assembled(snapshot, mesh, (stands_at, name), beside, path, &staging)?;
     staged.commit()?;
     if let Some(kept) = kept {
         mesh.note_copy(&kept, Stamp::of(&kept)?);
@@ -177,6 +179,8 @@ pub struct OpenedProject {
     pub loaded: Loaded,
     /// The mesh's path.
     pub source: MeshSource,
+    /// The place of the sequence of whose frames the mesh is one.
+    pub sequence: Option<PathBuf>,
     /// The mesh's path in the project; empty for the sample.
     pub named: PathBuf,
     /// The project's file as it was read.
@@ -209,6 +213,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
                 project,
                 loaded,
                 source: MeshSource::Sample,
+                sequence: None,
                 named: PathBuf::new(),
                 stamp,
             })
@@ -221,6 +226,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
         };
     };
     let folder = files::folder_of(path);
+    let sequence = project.sequence().map(|named| files::path_of_text(folder, named));
     let at = files::path_of_text(folder, &named);
     let beside = folder.join(at.file_name().unwrap_or_default());
     let (mut what, mut found) = ("missing", None);
@@ -255,6 +261,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
             project,
             loaded,
             source: MeshSource::File(mesh),
+            sequence,
             named: at.clone(),
             stamp,
         });

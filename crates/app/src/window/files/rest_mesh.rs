@@ -37,6 +37,8 @@ pub struct RestMesh {
     pub loaded: Arc<Loaded>,
     /// Its place.
     pub source: MeshSource,
+    /// The place of the sequence of whose frames it is one.
+    pub sequence: Option<PathBuf>,
     /// The files that contain it, as they were then.
     copies: KnownFiles,
 }
@@ -48,7 +50,18 @@ impl RestMesh {
         if let Some(stamp) = &loaded.stamp {
             copies.note(&loaded.path, stamp.clone());
         }
-        Self { loaded, source, copies }
+        Self {
+            loaded,
+            source,
+            sequence: None,
+            copies,
+        }
+    }
+
+    /// The same, a frame of the sequence at this place.
+    #[must_use]
+    pub fn of_sequence(self, sequence: Option<PathBuf>) -> Self {
+        Self { sequence, ..self }
     }
 
     /// Notes that a file contains it.

@@ -55,6 +55,8 @@ pub enum Content {
     Edit(Box<EditFile>),
     /// The edit over time.
     Animation(Box<AnimationToWrite>),
+    /// The frames of a sequence.
+    Frames(Box<FramesToWrite>),
     /// A picture of the view.
     Picture(Arc<Image>),
 }
@@ -72,6 +74,23 @@ pub struct AnimationToWrite {
     pub mesh: RestMesh,
     /// The dye that was kept as vertex colours, for each surface vertex.
     pub dye: Option<Arc<Vec<Dye>>>,
+    /// The stage of the work.
+    pub watch: Watch,
+}
+
+/// The frames of a sequence with the edit.
+#[derive(Clone)]
+pub struct FramesToWrite {
+    /// The edit with its keys.
+    pub edit: EditFile,
+    /// The folder of frames, the point cache or the glTF.
+    pub sequence: PathBuf,
+    /// The mesh of a point cache.
+    pub cached_mesh: Option<PathBuf>,
+    /// The frames a second of a glTF.
+    pub fps: f64,
+    /// Whether numbered files may replace others.
+    pub existing: ExistingFrames,
     /// The stage of the work.
     pub watch: Watch,
 }
@@ -143,6 +162,8 @@ pub enum WrittenKind {
     Morph,
     /// The model over time, which is a copy beside the open file.
     Animation,
+    /// The frames of the open sequence, beside it.
+    Frames,
 }
 
 /// The reason why a file was not written; all files are unchanged.
@@ -168,7 +189,7 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&animation.mesh),
-            Self::Edit(_) | Self::Picture(_) => None,
+            Self::Frames(_) | Self::Edit(_) | Self::Picture(_) => None,
         }
     }
 
@@ -177,7 +198,25 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&mut animation.mesh),
-            Self::Edit(_) | Self::Picture(_) => None,
+            Self::Frames(_) | Self::Edit(_) | Self::Picture(_) => None,
+        }
+    }
+
+    /// The stages of the work, if it has several.
+    pub(in crate::window) fn watch(&self) -> Option<&Watch> {
+        match self {
+            Self::Animation(animation) => Some(&animation.watch),
+            Self::Frames(frames) => Some(&frames.watch),
+            _ => None,
+        }
+    }
+
+    /// From now on numbered files may replace others.
+    pub(in crate::window) fn replace_frames(&mut self) {
+        match self {
+            Self::Animation(animation) => animation.frames = ExistingFrames::Replace,
+            Self::Frames(frames) => frames.existing = ExistingFrames::Replace,
+            _ => {}
         }
     }
 }

@@ -13,6 +13,7 @@ use super::rest_mesh::MeshSource;
 use super::save_request::{
     AnimationToWrite, Changed, Content, KeepOriginal, Model, SaveRequest, Shape, Unwritten, Written, WrittenKind,
 };
+use super::written_frames;
 use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
 use pliant_editor::Beginning;
@@ -85,6 +86,10 @@ fn write_unless_changed(
     if is_changed(path) {
         return Ok(Err(path.clone()));
     }
+    if let Content::Frames(frames) = content {
+        let notes = written_frames::write(frames, path, cancel)?;
+        return Ok(Ok(written(request, WrittenKind::Frames, notes)));
+    }
     let progress = progress.part(0.02, 1.0);
     let staging = Staging::default();
     let (sources, role) = match content {
@@ -117,13 +122,17 @@ fn write_unless_changed(
     {
         mesh.note_copy(&copy, stamp);
     }
-    Ok(Ok(Written {
-        path: path.clone(),
+    Ok(Ok(written(request, what, notes)))
+}
+
+fn written(request: &SaveRequest, what: WrittenKind, notes: Vec<String>) -> Written {
+    Written {
+        path: request.path.clone(),
         what,
         notes,
         mark: request.mark,
         opened: request.opened,
-    }))
+    }
 }
 
 fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: &Cancel) -> Result<Ready, EngineError> {
@@ -169,6 +178,8 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
                 ..Ready::new(saved.staged, WrittenKind::Morph)
             })
         }
+        // They are written by themselves.
+        Content::Frames(_) => Err(EngineError::Interrupted),
         Content::Animation(animation) => ready_animation(animation, path, staging, cancel),
         Content::Model(model) => ready_model(model, path, staging, progress, cancel),
     }

@@ -14,6 +14,8 @@ use crate::window::threads::message::{Ground, PictureKind};
 pub enum FileCommand {
     /// Open a file, by dialog.
     Open,
+    /// Open a sequence, by dialog.
+    OpenSequence,
     /// Open this file.
     OpenPath(PathBuf),
     /// Open the built-in sample.
@@ -34,6 +36,8 @@ pub enum FileCommand {
     ExportEdit,
     /// Write the edit over time.
     ExportAnimation,
+    /// Write the frames of the open sequence with the edit.
+    ExportFrames,
     /// Apply an edit from a file to the open mesh.
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
@@ -88,9 +92,21 @@ impl FileCommand {
         };
         match self {
             Self::Append if editor.view().model.is_none() => Some("Nothing is open: open a file first."),
+            Self::Append if editor.document().animation().frames().is_some() => {
+                Some("A sequence is open, and a part would fit only one frame: open the frame alone.")
+            }
             Self::Append if editor.view().stitching.is_some() => Some(BUSY),
             Self::Append if editor.document().is_in_work_pose() => {
                 Some("This would change the shape to return to: leave the work pose first.")
+            }
+            Self::SaveAs | Self::SaveMorph if editor.document().animation().frames().is_some() => {
+                Some("A sequence has many shapes: save the project instead.")
+            }
+            Self::ExportAnimation if editor.document().animation().frames().is_some() => {
+                Some("A sequence is open: choose Export frames… instead.")
+            }
+            Self::ExportFrames if editor.document().animation().frames().is_none() => {
+                Some("No sequence is open: choose Open sequence… first.")
             }
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
@@ -132,8 +148,10 @@ impl FileCommand {
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
+            | Self::OpenSequence
             | Self::SaveMorph
             | Self::ExportAnimation
+            | Self::ExportFrames
             | Self::ApplyEdit
             | Self::Weld(_)
             | Self::Append
@@ -157,8 +175,9 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 27] = [
+    pub const LISTED: [Self; 29] = [
         Self::Open,
+        Self::OpenSequence,
         Self::NewFromSample,
         Self::Save,
         Self::SaveAs,
@@ -168,6 +187,7 @@ impl FileCommand {
         Self::SaveProjectAs,
         Self::ExportEdit,
         Self::ExportAnimation,
+        Self::ExportFrames,
         Self::ApplyEdit,
         Self::Append,
         Self::MergeOptions,
@@ -194,6 +214,7 @@ impl FileCommand {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
+            Self::OpenSequence => "Open sequence…",
             Self::NewFromSample => "New from sample",
             Self::ShowInFolder => "Show in folder",
             Self::Manual => "Manual",
@@ -220,6 +241,7 @@ impl FileCommand {
             Self::Hints => "Canvas hints",
             Self::ExportEdit => "Export edit…",
             Self::ExportAnimation => "Export animation…",
+            Self::ExportFrames => "Export frames…",
             Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -230,6 +252,7 @@ impl FileCommand {
     pub fn keywords(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "load import file",
+            Self::OpenSequence => "load import frames 4d scan point cache pc2 mdd animation time",
             Self::NewFromSample => "open example creature try",
             Self::ShowInFolder => "file manager explorer finder reveal directory",
             Self::Manual => "help documentation guide",
@@ -253,6 +276,7 @@ impl FileCommand {
             Self::Hints => "help first steps",
             Self::ExportEdit => "json command line",
             Self::ExportAnimation => "keys timeline gltf glb pc2 mdd frames video bake write",
+            Self::ExportFrames => "sequence folder 4d scan point cache pc2 mdd glb write save",
             Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",

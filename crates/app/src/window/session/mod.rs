@@ -1,5 +1,6 @@
 //! The open file, and the jobs that load and save it.
 
+mod frames;
 mod open_file;
 pub(in crate::window) mod opening;
 mod shapes;
@@ -9,6 +10,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_editor::{JobQueue, Revision, SaveMark, StitchRequest};
 
 use crate::files::original::Original;
@@ -17,6 +19,8 @@ use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
 use crate::window::files::writing::write;
+use crate::window::session::frames::FrameReads;
+pub use crate::window::session::frames::meant_by;
 pub use crate::window::session::open_file::OpenFile;
 pub use crate::window::session::opening::Source;
 use crate::window::session::opening::{absolute, open};
@@ -50,6 +54,8 @@ pub struct Session {
     pub others: OtherShapes,
     /// The file that a change of the mesh appends.
     pub to_append: Option<PathBuf>,
+    /// The frames of the open sequence.
+    frames: FrameReads,
     /// The running change of the mesh.
     stitching: Option<(Revision, Watch)>,
 }
@@ -92,6 +98,22 @@ impl Session {
         }
     }
 
+    /// A frame of the open sequence, if it is known; if not, it is read, off the window's thread.
+    pub fn frame(&mut self, frame: usize, workers: &Workers) -> Option<Arc<Vec<DVec3>>> {
+        let sequence = self.open.as_ref()?.sequence.as_ref()?;
+        self.frames.request(frame, sequence, workers)
+    }
+
+    /// Takes a frame that was read. Returns it if it belongs to the open sequence.
+    pub fn take_frame(
+        &mut self,
+        stamp: Revision,
+        frame: usize,
+        shape: Result<Arc<Vec<DVec3>>, String>,
+    ) -> Option<Result<Arc<Vec<DVec3>>, String>> {
+        self.frames.take(stamp, frame, shape)
+    }
+
     /// Cancels the running work: a change of the mesh, a load, or a save before it has changed anything on the disk.
     pub fn stop(&mut self) {
         self.stop_stitching();
@@ -131,6 +153,7 @@ impl Session {
         self.others = OtherShapes::default();
         self.stop_stitching();
         self.stitching = None;
+        self.frames.forget();
         for (path, stamp) in opened.loaded.stamps() {
             self.known.note(path, stamp.clone());
         }
@@ -142,8 +165,10 @@ impl Session {
             loaded: Arc::clone(&opened.loaded),
             morph_targets: opened.loaded.scene.morph_targets(),
             drawing: Arc::clone(&opened.drawing),
-            mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone()),
+            mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone())
+                .of_sequence(opened.sequence.as_ref().map(|(sequence, _)| sequence.path().to_owned())),
             project: opened.project.clone(),
+            sequence: opened.sequence.as_ref().map(|(sequence, _)| Arc::clone(sequence)),
             in_file: match &opened.path {
                 Some(path) if is_same(path, &opened.loaded.path) => InFile::AsRead,
                 _ => InFile::Unknown,
@@ -218,7 +243,11 @@ impl Session {
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
-                WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Animation | WrittenKind::Picture => {}
+                WrittenKind::Edit
+                | WrittenKind::Morph
+                | WrittenKind::Animation
+                | WrittenKind::Frames
+                | WrittenKind::Picture => {}
             }
         }
         self.start_saving(workers);
@@ -279,10 +308,7 @@ impl Session {
         let Some((running, request)) = self.saving.start_next() else {
             return;
         };
-        self.save_watch = match &request.content {
-            Content::Animation(animation) => Some(animation.watch.clone()),
-            _ => None,
-        };
+        self.save_watch = request.content.watch().cloned();
         let stamp = running.stamp;
         let (progress, cancel) = (running.progress.clone(), running.cancel.clone());
         workers.spawn(

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_engine::Loaded;
 use pliant_engine::files::is_same;
+use pliant_engine::{Loaded, OpenSequence};
 use pliant_picture::drawing::Drawing;
 
 use crate::files::names::file_name;
@@ -25,6 +25,8 @@ pub struct OpenFile {
     pub mesh: RestMesh,
     /// The project that it was opened from or saved to.
     pub project: Option<PathBuf>,
+    /// The sequence of whose frames it is one.
+    pub sequence: Option<Arc<OpenSequence>>,
     /// What the file at `path` holds of it.
     pub in_file: InFile,
     /// True if a person agreed to replace `path`, or saved it here under a new name.
@@ -34,7 +36,8 @@ pub struct OpenFile {
 impl OpenFile {
     /// The name to show.
     pub fn name(&self) -> String {
-        file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
+        let own = self.path.as_deref().unwrap_or(&self.loaded.path);
+        file_name(self.sequence.as_ref().map_or(own, |sequence| sequence.path()))
     }
 
     /// Returns true if a path leads to the file that was read or last saved.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Beginning, SavedAs, Snapshot};
+use pliant_editor::{Animation, Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
 use crate::files::names::saved_name;
@@ -12,11 +12,12 @@ use crate::window::files::in_file::SavedShape;
 use crate::window::files::project_file;
 use crate::window::files::recovery::left::opened_project;
 use crate::window::files::rest_mesh::{MeshSource, load_sample};
+use crate::window::session::frames::mesh_of;
 use crate::window::threads::message::ModelToShow;
 use crate::window::viewport::gpu::Gpu;
 use pliant_engine::files::Stamp;
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, examples, files};
+use pliant_engine::{EngineError, OpenSequence, examples, files};
 use pliant_picture::drawing::Drawing;
 
 /// The source of a model.
@@ -26,6 +27,15 @@ pub enum Source {
     Sample,
     /// A mesh or a project.
     File(PathBuf),
+    /// A sequence: a folder of frames, a point cache, or a glTF with an animation of morph targets.
+    Sequence {
+        /// The folder or the file.
+        path: PathBuf,
+        /// The file that a person chose: it is shown first, if it is one of the frames.
+        chosen: Option<PathBuf>,
+        /// The mesh that is open, to which a point cache may belong.
+        open: Option<PathBuf>,
+    },
     /// A mesh, and an edit or a project to begin with.
     Edited {
         /// The mesh.
@@ -63,8 +73,21 @@ impl Source {
     pub fn of(file: Option<PathBuf>, edit: Option<PathBuf>) -> Self {
         match (file, edit) {
             (None, _) => Self::Sample,
-            (Some(file), None) => Self::File(file),
+            (Some(file), None) => Self::file(file),
             (Some(file), Some(edit)) => Self::Edited { file, edit },
+        }
+    }
+
+    /// A mesh, a project, a folder of frames or a point cache.
+    pub fn file(path: PathBuf) -> Self {
+        let is_sequence = path.is_dir() || pliant_io::PointCacheFormat::of_name(&path.to_string_lossy()).is_some();
+        match is_sequence {
+            false => Self::File(path),
+            true => Self::Sequence {
+                path,
+                chosen: None,
+                open: None,
+            },
         }
     }
 
@@ -74,6 +97,11 @@ impl Source {
         match self {
             Self::Sample => Self::Sample,
             Self::File(file) => Self::File(absolute(&file)),
+            Self::Sequence { path, chosen, open } => Self::Sequence {
+                path: absolute(&path),
+                chosen: chosen.as_deref().map(absolute),
+                open,
+            },
             Self::Edited { file, edit } => Self::Edited {
                 file: absolute(&file),
                 edit: absolute(&edit),
@@ -105,6 +133,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let mut notes = Vec::new();
     let mut unsaved = None;
     let (mut project, mut recovered) = (None, None);
+    let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
     let (loaded, path, source) = match source {
         Source::Sample => (load_sample(&weld, watch)?, None, MeshSource::Sample),
         Source::File(path) if !pliant_engine::is_project(path) => (
@@ -112,6 +141,12 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             Some(path.clone()),
             MeshSource::File(path.clone()),
         ),
+        Source::Sequence { path, chosen, open } => {
+            let mesh = mesh_of(path, open.as_deref())?;
+            sequence = Some((path.clone(), chosen.as_deref()));
+            let loaded = pliant_engine::load(&mesh, &weld, watch)?;
+            (loaded, Some(mesh.clone()), MeshSource::File(mesh))
+        }
         Source::Edited { file, edit } => {
             // This comes before reading: a write in between shows as a change.
             stamps.push((edit.clone(), Stamp::of(edit)?));
@@ -147,6 +182,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         Source::File(path) | Source::Recovered(path) => {
             let opened = project_file::read(path, watch)?;
             stamps.push((path.clone(), opened.stamp));
+            sequence = opened.sequence.map(|place| (place, None));
             match source {
                 Source::Recovered(_) => {
                     recovered = Some(path.clone());
@@ -173,6 +209,16 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             }
         }
     };
+    let loaded = Arc::new(loaded);
+    let sequence = match sequence {
+        None => None,
+        Some((path, chosen)) => {
+            let sequence = OpenSequence::of(&path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
+            notes.extend(sequence.note().map(str::to_owned));
+            let shown = chosen.and_then(|file| sequence.frame_of(file));
+            Some((Arc::new(sequence), shown))
+        }
+    };
     let progress = watch.begin("preparing the picture");
     notes.extend_from_slice(loaded.scene.notes());
     let drawing = Drawing::new(&loaded.model, loaded.scene.appearance(), Arc::default());
@@ -185,10 +231,11 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         .map_err(|error| EngineError::System(error.to_string()))?;
     Ok(Box::new(ModelToShow {
         path,
-        loaded: Arc::new(loaded),
+        loaded,
         drawing: Arc::new(drawing),
         surface,
         displacements,
+        sequence,
         beginning,
         project,
         source,

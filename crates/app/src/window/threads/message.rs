@@ -14,8 +14,8 @@ use crate::window::files::listing::Entry;
 use crate::window::files::other_shape::OtherShape;
 use crate::window::files::rest_mesh::MeshSource;
 use crate::window::files::save_request::{Unwritten, Written};
-use pliant_engine::Loaded;
 use pliant_engine::files::Stamp;
+use pliant_engine::{Loaded, OpenSequence};
 use pliant_picture::drawing::{Drawing, Field, Pose, Scale};
 
 /// A result of another thread; the window takes all waiting ones at the start of each frame.
@@ -32,6 +32,9 @@ pub enum Message {
     LoadedMaterials(ImagesOf, Result<LoadedMaterials, String>),
     /// A file was opened, or the reason why not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
+    /// A frame of the open sequence was read: the displacements of its surface vertices from the file's shape, or the
+    /// reason why not.
+    Frame(Revision, usize, Result<Arc<Vec<DVec3>>, String>),
     /// The open file's triangles were changed, or the reason why not.
     Stitched(Revision, Result<Box<Stitched>, Refusal>),
     /// A file was written, or the reason why not.
@@ -119,6 +122,8 @@ pub struct ModelToShow {
     pub surface: Surface,
     /// Its own shape: no vertex is displaced.
     pub displacements: Arc<Vec<DVec3>>,
+    /// The sequence of whose frames it is one, and the frame to show, if a person has chosen it.
+    pub sequence: Option<(Arc<OpenSequence>, Option<usize>)>,
     /// Regions and handles to begin with.
     pub beginning: Option<Beginning>,
     /// The project from which it was opened, or to which it will be saved.
@@ -160,6 +165,8 @@ pub struct Refusal {
 pub enum Purpose {
     /// To open a model.
     Open,
+    /// To open a sequence: one of its files, or its point cache.
+    OpenSequence,
     /// To save the model under.
     SaveAs,
     /// To save the model under, at rest and with the edit as a morph target.
@@ -170,6 +177,8 @@ pub enum Purpose {
     ExportEdit,
     /// To write the edit over time to.
     ExportAnimation,
+    /// To write the frames of a sequence to: a folder, a point cache or an animation.
+    ExportFrames,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
     /// To put beside the open shape.

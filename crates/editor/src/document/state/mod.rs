@@ -9,6 +9,7 @@
 mod animation;
 mod exchange;
 mod fluid;
+mod frames;
 mod freedom;
 mod poses;
 mod reloaded;

@@ -33,6 +33,9 @@ struct StoredKey {
     /// The curves, by the handles' numbers.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     curves: BTreeMap<u32, HandleCurve>,
+    /// The first and the last frame of each key's span in a sequence, by the handles' numbers.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    spans: BTreeMap<u32, [usize; 2]>,
     /// The weights of the examples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<Option<f64>>>,
@@ -53,6 +56,7 @@ impl StoredAnimation {
                 .iter()
                 .map(|(id, curve)| (u32::from(id.0), curve.clone()))
                 .collect(),
+            spans: key.spans.iter().map(|(id, span)| (u32::from(id.0), *span)).collect(),
             weights: key.weights.clone(),
         };
         Some(Self {
@@ -94,6 +98,11 @@ impl StoredAnimation {
                 .curves
                 .iter()
                 .filter_map(|(id, curve)| Some((HandleId(u16::try_from(*id).ok()?), curve.clone())))
+                .collect(),
+            spans: key
+                .spans
+                .iter()
+                .filter_map(|(id, span)| Some((HandleId(u16::try_from(*id).ok()?), *span)))
                 .collect(),
             weights: key.weights.clone(),
         };

@@ -120,6 +120,9 @@ pub struct Project {
     /// The edit over time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     animation: Option<StoredAnimation>,
+    /// The sequence of whose frames the mesh is one, by its path, as the mesh's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sequence: Option<String>,
     /// The fluid on the surface, and the forces in its flow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     flow: Option<StoredFlow>,
@@ -280,6 +283,7 @@ impl Project {
             poses: document.poses.iter().map(StoredPose::of).collect(),
             work_pose: None,
             animation: StoredAnimation::of(document.animation()),
+            sequence: None,
             flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
             mesh_colours: None,
             camera: camera.map(StoredCamera::of),
@@ -296,6 +300,17 @@ impl Project {
     /// Its mesh.
     pub fn mesh(&self) -> &MeshReference {
         &self.mesh
+    }
+
+    /// The path of the sequence of whose frames the mesh is one, as the mesh's own.
+    pub fn sequence(&self) -> Option<&str> {
+        self.sequence.as_deref()
+    }
+
+    /// The same of a sequence at this path.
+    #[must_use]
+    pub fn of_sequence(self, path: Option<String>) -> Self {
+        Self { sequence: path, ..self }
     }
 
     /// The same with the [`digest`] of the mesh's own vertex colours, over which its kept dye lies.

@@ -3,8 +3,10 @@
 mod rows;
 mod ruler;
 mod scale;
+mod spans;
 mod transport;
 
+use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, Panel, Rangef, Rect, ScrollArea, Stroke, vec2};
 use pliant_editor::{Command, Editor};
 
@@ -36,7 +38,12 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) -> Rect {
 fn contents(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.add_space(2.0);
-    transport::show(ui, editor, commands);
+    // In a narrow window it must not make the ruler wider than the strip.
+    ScrollArea::horizontal()
+        .id_salt("buttons of the timeline")
+        .auto_shrink([false, true])
+        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
+        .show(ui, |ui| transport::show(ui, editor, commands));
     let animation = editor.document().animation();
     let size = vec2(ui.available_width(), ruler::HEIGHT);
     let (line, _) = ui.allocate_exact_size(size, egui::Sense::hover());

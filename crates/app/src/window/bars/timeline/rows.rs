@@ -6,6 +6,7 @@ use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, vec2};
 use pliant_editor::{Command, Ease, Editor, Handle, KeyFrame, KeyId};
 
 use super::scale::TimeScale;
+use super::spans;
 use crate::window::widgets::command_button::command_button;
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
@@ -35,6 +36,9 @@ pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mu
         let rect = Rect::from_min_size(egui::pos2(whole.left(), top), vec2(whole.width(), HEIGHT));
         stripe(ui, rect.with_min_x(scale.x.min), row);
         name(ui, rect.with_max_x(scale.x.min - 4.0), handle, editor, commands);
+        if let Some(handle) = handle {
+            spans::show(ui, rect.with_min_x(scale.x.min), scale, editor, handle, commands);
+        }
         for key in editor.document().animation().keys() {
             let own: Vec<KeyId> = match handle {
                 Some(handle) => key
@@ -86,7 +90,11 @@ impl Mark<'_> {
         }
         let response = ui.interact(grip, id, Sense::click_and_drag());
         let whose = self.handle.map_or("all", |handle| &*handle.name);
-        let label = format!("Key of {whose} at {:.3} s", self.key.time);
+        let animation = editor.document().animation();
+        let label = match animation.frames() {
+            Some(_) => format!("Key of {whose} at frame {}", animation.frame_of(self.key)),
+            None => format!("Key of {whose} at {:.3} s", self.key.time),
+        };
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_selected, &label));
         let is_added = ui.input(|input| input.modifiers.shift);
         if response.clicked() || (response.drag_started() && !is_selected) {

@@ -18,7 +18,10 @@ pub fn show(ui: &egui::Ui, rect: Rect, scale: &TimeScale, editor: &Editor, comma
     if response.double_clicked() {
         TimeScale::fit(ui.ctx());
     }
-    let mut response = response.on_hover_text("Drag to show a moment; double-click to show all keys.");
+    let mut response = response.on_hover_text(match animation.frames() {
+        Some(_) => "Drag to show a frame; double-click to show all frames.",
+        None => "Drag to show a moment; double-click to show all keys.",
+    });
     let Some(pointer) = response.interact_pointer_pos() else {
         return commands.adjust(&response, || Command::GoToTime(animation.time()));
     };

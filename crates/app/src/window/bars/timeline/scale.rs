@@ -21,10 +21,13 @@ pub struct TimeScale {
 }
 
 impl TimeScale {
-    /// The stretch that a person has chosen, or else all keys with some room.
+    /// The stretch that a person has chosen, or else all keys or frames with some room.
     pub fn of(context: &Context, animation: &Animation, x: Rangef) -> Self {
         let chosen: Option<(f64, f64)> = context.data(|data| data.get_temp(id()));
-        let last = animation.duration().max(animation.time()).max(AT_LEAST);
+        let last = match animation.frames() {
+            Some(_) => animation.duration().max(SHORTEST),
+            None => animation.duration().max(animation.time()).max(AT_LEAST),
+        };
         // The playhead at 0 does not touch the names.
         let (from, to) = chosen.unwrap_or((-0.03 * last, 1.08 * last));
         Self { x, from, to }

@@ -47,8 +47,11 @@ fn moment(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let animation = editor.document().animation();
     let (fps, mut frame) = (animation.fps(), animation.frame_at(animation.time()));
     let field = number_field(ui, &mut frame, |ui, frame| {
-        let field = dragged(ui, frame, &[]).range(0.0..=Animation::LATEST * fps);
-        ui.add(field.speed(0.2).prefix("Frame ").max_decimals(2))
+        let field = dragged(ui, frame, &[]).speed(0.2).prefix("Frame ");
+        ui.add(match animation.frames() {
+            Some(count) => field.range(0.0..=(count - 1) as f64).max_decimals(0),
+            None => field.range(0.0..=Animation::LATEST * fps).max_decimals(2),
+        })
     });
     let is_dragged = field.dragged() || field.drag_stopped();
     let field = field.on_hover_text(format!("Shows a moment: {:.3} s.", animation.time()));

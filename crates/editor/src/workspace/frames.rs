@@ -1,0 +1,184 @@
+//! The frames of a sequence: the one that a person wants to see is asked for, and becomes the document's rest shape when
+//! it was read. Until then the last one stays.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::frame_work::FrameWork;
+use super::state::Workspace;
+use crate::document::{Aspect, Document, FramePlace, Handle, HandleId, HandleTransform, SavedAs};
+use crate::timeline::{HandlePlace, frames_that_reach, places_of_handles, transform_at};
+
+/// The name of the step to another frame. Steps that follow each other become one.
+const GO_TO_FRAME: &str = "Go to frame";
+
+impl Workspace {
+    /// The opened file is a frame of a sequence of so many frames.
+    pub(crate) fn open_sequence(&mut self, count: usize, shown: Option<usize>) {
+        let animation = self.document.animation().of_sequence(count);
+        let shown = shown.unwrap_or(animation.frame());
+        self.document.set_animation(animation.at_frame(0));
+        self.history.needs(SavedAs::Project);
+        self.frames = FrameWork {
+            is_beginning: true,
+            ..FrameWork::default()
+        };
+        self.frames.wanted = Some(shown);
+    }
+
+    /// Wants a frame to be shown, or the last one if there are fewer.
+    pub(super) fn want_frame(&mut self, frame: usize) {
+        let animation = self.document.animation();
+        let frame = animation.at_frame(frame).frame();
+        self.frames.wanted = (frame != animation.frame()).then_some(frame);
+    }
+
+    /// Returns true between the wish for a frame and its arrival.
+    pub(crate) fn awaits_frame(&self) -> bool {
+        self.frames.is_awaited()
+    }
+
+    /// The frame that must be read next; `None` if there is none.
+    pub(crate) fn frame_to_read(&self) -> Option<usize> {
+        let wanted = self.frames.wanted?;
+        let is_read = self.frames.read.as_ref().is_some_and(|(frame, _)| *frame == wanted);
+        match is_read {
+            true => self.unknown_frame(wanted),
+            false => Some(wanted),
+        }
+    }
+
+    /// A frame with a key that reaches this one, in which the handles' places are not known.
+    fn unknown_frame(&self, frame: usize) -> Option<usize> {
+        let document = &self.document;
+        let is_known = |needed: &usize| {
+            let is_current = self.frames.places_of == Some(document.versions().of(Aspect::Paint));
+            is_current && self.frames.places.contains_key(needed)
+        };
+        let mut needed = frames_that_reach(document.animation(), document.handles(), frame).into_iter();
+        needed.find(|needed| *needed != frame && !is_known(needed))
+    }
+
+    /// Notes the handles' places in a frame that has a key.
+    fn note_places(&mut self, frame: usize, shape: &[DVec3]) {
+        let paint = self.document.versions().of(Aspect::Paint);
+        if self.frames.places_of.replace(paint) != Some(paint) {
+            self.frames.places.clear();
+        }
+        let animation = self.document.animation();
+        let has_key = animation.keys().iter().any(|key| animation.frame_of(key) == frame);
+        if has_key && !self.frames.places.contains_key(&frame) {
+            let places = self.places_in(shape);
+            self.frames.places.insert(frame, places);
+        }
+    }
+
+    /// Takes a frame that was read, or the reason why it was not.
+    pub(crate) fn take_frame(&mut self, frame: usize, shape: Result<Arc<Vec<DVec3>>, String>) {
+        let is_awaited = self.frame_to_read() == Some(frame);
+        match shape {
+            Ok(shape) if shape.len() == self.document.rest().len() => {
+                self.note_places(frame, &shape);
+                // A frame that was read for its handles' places is not shown.
+                if self.frames.wanted == Some(frame) {
+                    self.frames.read = Some((frame, shape));
+                }
+            }
+            Ok(_) => {}
+            Err(sentence) if is_awaited => {
+                self.frames.stop();
+                self.pause_keys();
+                self.refuse(sentence);
+            }
+            Err(_) => {}
+        }
+    }
+
+    /// Shows the wanted frame if it was read.
+    pub(crate) fn show_wanted_frame(&mut self) {
+        let Some(wanted) = self.frames.wanted else { return };
+        if self.frame_to_read().is_some() {
+            return;
+        }
+        let Some((_, shape)) = self.frames.read.take_if(|(frame, _)| *frame == wanted) else {
+            return;
+        };
+        self.frames.wanted = None;
+        let is_first = std::mem::take(&mut self.frames.is_beginning) && self.history.names().0.is_empty();
+        if is_first || self.keys.is_playing() {
+            return self.put_frame(wanted, &shape);
+        }
+        if !self.is_adjusting() && self.history.undo_name() == Some(GO_TO_FRAME) {
+            self.history.undo(&mut self.document);
+        }
+        self.step(GO_TO_FRAME, |workspace| workspace.put_frame(wanted, &shape));
+    }
+
+    /// Wants the frame so many after the shown or wanted one.
+    pub(super) fn step_frames(&mut self, frames: i32) {
+        let now = self.frames.wanted.unwrap_or(self.document.animation().frame());
+        self.want_frame(now.saturating_add_signed(frames as isize));
+    }
+
+    /// Brings the handles in the shown frame to where the keys have them, in the present step if all is known.
+    pub(super) fn pose_frame(&mut self) {
+        let (frame, shape) = (self.document.animation().frame(), Arc::clone(&self.document.rest));
+        self.note_places(frame, &shape);
+        match self.unknown_frame(frame) {
+            None => self.put_frame(frame, &shape),
+            Some(_) if self.frames.wanted.is_none() => {
+                self.frames.wanted = Some(frame);
+                self.frames.read = Some((frame, shape));
+            }
+            // It is brought there with the next frame.
+            Some(_) => {}
+        }
+    }
+
+    fn put_frame(&mut self, frame: usize, shape: &Arc<Vec<DVec3>>) {
+        self.note_places(frame, shape);
+        let places = self.frame_places(Some(frame), shape);
+        let document = &mut self.document;
+        document.put_frame(frame, shape, &places);
+        if !document.is_settled() {
+            self.jobs.solve_anew(document.versions().of(Aspect::Targets));
+        }
+    }
+
+    /// The document at the file's own shape with its handles at rest, as files store it: the frames' shapes are in their
+    /// own files.
+    pub(crate) fn document_at_file(&self) -> Document {
+        let places = self.frame_places(None, &self.original);
+        self.document.at_file(&self.original, &places)
+    }
+
+    /// Each handle's pivot and transform in a frame with this shape; at rest without a frame.
+    fn frame_places(&self, frame: Option<usize>, shape: &[DVec3]) -> BTreeMap<HandleId, FramePlace> {
+        let document = &self.document;
+        let (before, now) = (self.places_in(document.rest()), self.places_in(shape));
+        let place = |handle: &Handle| {
+            let own = now.get(&handle.id)?;
+            let pivot = match before.get(&handle.id)? {
+                before if before == own => handle.pivot,
+                before => own.carried(handle.pivot, before),
+            };
+            let transform = frame.map_or(HandleTransform::IDENTITY, |frame| {
+                let place_at = |key: usize| match key == frame {
+                    true => Some(*own),
+                    false => self.frames.places.get(&key)?.get(&handle.id).copied(),
+                };
+                transform_at(document.animation(), handle, (frame, own, pivot), place_at)
+            });
+            Some((handle.id, (pivot, transform)))
+        };
+        document.handles().iter().filter_map(place).collect()
+    }
+
+    /// The place of each handle where the surface is so far from the file's.
+    fn places_in(&self, way: &[DVec3]) -> BTreeMap<HandleId, HandlePlace> {
+        let file = self.model().map_or(&[][..], |model| &model.surface.positions);
+        places_of_handles(self.document.paint(), file, way)
+    }
+}

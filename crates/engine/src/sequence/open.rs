@@ -1,0 +1,135 @@
+//! An open sequence, whose frames are read one at a time.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_io::Format;
+use pliant_mesh::Drawn;
+
+use super::cache::Cache;
+use super::folder::Folder;
+use super::morphs::Morphs;
+use super::source::{Source, cache_format};
+use crate::EngineError;
+use crate::files::is_same;
+use crate::loading::Loaded;
+use crate::path_text::shown;
+use crate::watch::Watch;
+
+/// A sequence on the mesh whose vertices and faces all frames have.
+pub struct OpenSequence {
+    path: PathBuf,
+    mesh: Arc<Loaded>,
+    /// The geometry of the mesh.
+    rest: Drawn,
+    source: Source,
+    fps: f64,
+    note: Option<String>,
+}
+
+impl OpenSequence {
+    /// The file whose vertices and faces all frames of a sequence have: the first frame of a folder, or the glTF itself.
+    /// `None` for a point cache, which holds only positions.
+    ///
+    /// # Errors
+    /// A path that is no sequence.
+    pub fn mesh_of(path: &Path) -> Result<Option<PathBuf>, EngineError> {
+        if cache_format(path).is_some() {
+            return Ok(None);
+        }
+        match is_gltf(path) {
+            true => Ok(Some(path.to_owned())),
+            false => Ok(Folder::of(path)?.frames.into_iter().next()),
+        }
+    }
+
+    /// Returns true for a folder, a point cache or a glTF.
+    pub fn is_one(path: &Path) -> bool {
+        path.is_dir() || cache_format(path).is_some() || is_gltf(path)
+    }
+
+    /// The number of the frame that is this file, in a folder of frames.
+    pub fn frame_of(&self, file: &Path) -> Option<usize> {
+        match &self.source {
+            Source::Folder(frames) => frames.iter().position(|frame| is_same(frame, file)),
+            Source::Cache(_) | Source::Morphs(_) => None,
+        }
+    }
+
+    /// Opens a folder of frames, a point cache, or a glTF's animation of morph targets at `fps` frames a second. No frame
+    /// is read yet.
+    ///
+    /// # Errors
+    /// A path that is no sequence, or one of another mesh.
+    pub fn of(path: &Path, mesh: Arc<Loaded>, fps: f64, watch: &Watch) -> Result<Self, EngineError> {
+        let (source, note) = match cache_format(path) {
+            Some(format) => (Source::Cache(Cache::of(path, format, &mesh)?), None),
+            None if is_gltf(path) => {
+                let morphs = Morphs::of(&mesh, fps, watch)?;
+                let choice = morphs.choice();
+                (Source::Morphs(morphs), choice)
+            }
+            None => {
+                let folder = Folder::of(path)?;
+                (Source::Folder(folder.frames), folder.gap)
+            }
+        };
+        if source.count() == 0 {
+            return Err(EngineError::Unsupported(format!(
+                "{} holds no frame: give another sequence",
+                shown(path)
+            )));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            rest: mesh.model.rest(),
+            mesh,
+            source,
+            fps,
+            note,
+        })
+    }
+
+    /// The folder, the point cache or the glTF.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The frames a second at which a glTF's animation was read.
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// Returns true for a point cache, whose mesh is in another file.
+    pub fn is_cache(&self) -> bool {
+        matches!(self.source, Source::Cache(_))
+    }
+
+    /// The number of frames, at least one.
+    pub fn count(&self) -> usize {
+        self.source.count()
+    }
+
+    /// A sentence for a person: a number that is missing among the frames' names, or the choice among animations.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    /// Reads a frame below [`count`](Self::count): the displacement of each surface vertex from its place in the mesh's
+    /// file.
+    ///
+    /// # Errors
+    /// A frame that can't be read, or that has other vertices or faces.
+    pub fn displacements(&self, frame: usize, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
+        let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
+        let rest = &self.mesh.model.surface.positions;
+        Ok(positions.iter().zip(rest).map(|(own, rest)| *own - *rest).collect())
+    }
+}
+
+/// Returns true for a file with a glTF's name.
+pub(super) fn is_gltf(path: &Path) -> bool {
+    let format = Format::of_name(&path.to_string_lossy());
+    matches!(format, Ok(Format::Glb | Format::Gltf)) && path.is_file()
+}

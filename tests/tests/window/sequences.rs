@@ -1,0 +1,179 @@
+//! A sequence in the whole window: its frames are shown by a drag along the ruler, a key spreads over a span whose end is
+//! dragged, the frames are exported as the command line writes them, and a project brings everything back; skipped by
+//! name if there is no graphics device at all.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::window_rig::Session;
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2, pos2};
+use egui_kittest::kittest::Queryable;
+use glam::{DQuat, DVec3};
+use pliant_app::window::{AppDirectories, Source};
+use pliant_deform::Method;
+use pliant_editor::{Command, Document};
+use pliant_mesh::shapes;
+use pliant_tests::{Folder, run};
+
+/// The number of frames.
+const COUNT: usize = 12;
+
+/// Writes the frames of a ball that turns and wanders.
+fn frames(folder: &Path) {
+    std::fs::create_dir(folder).unwrap();
+    let ball = shapes::icosphere(2);
+    for frame in 0..COUNT {
+        let t = frame as f64 / COUNT as f64;
+        let mut text = String::new();
+        for position in &ball.positions {
+            let p = DQuat::from_rotation_y(t) * *position * (1.0 + 0.05 * t * (5.0 * position.y).sin());
+            let p = p + DVec3::new(0.3 * t, 0.0, 0.1 * t);
+            writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
+        }
+        for corners in &ball.triangles {
+            let [a, b, c] = corners.map(|corner| corner.0 + 1);
+            writeln!(text, "f {a} {b} {c}").unwrap();
+        }
+        std::fs::write(folder.join(format!("ball-{frame}.obj")), text).unwrap();
+    }
+}
+
+fn open(path: &Path) -> Option<Session> {
+    Session::begin_in(Source::of(Some(path.to_owned()), None), AppDirectories::default())
+}
+
+fn document(session: &Session) -> &Document {
+    session.harness.state().editor().document()
+}
+
+fn command(session: &mut Session, command: Command) {
+    session.harness.state_mut().command(command);
+    session.settle();
+}
+
+/// The place of a frame on the ruler, as the key at `key` shows it.
+fn on_ruler(session: &Session, frame: usize) -> Pos2 {
+    let ruler = session
+        .harness
+        .get_by_role_and_label(Role::Slider, "Shown moment")
+        .rect();
+    let last = (COUNT - 1) as f32;
+    // Some room on both sides, as for all frames.
+    let share = (frame as f32 / last + 0.03) / 1.11;
+    pos2(ruler.left() + share * ruler.width(), ruler.center().y)
+}
+
+/// The middle of the grip at the last frame of the only span.
+fn end_of_span(session: &Session) -> Pos2 {
+    let label = "Last frame that a key of handle 1 reaches";
+    session
+        .harness
+        .get_by_role_and_label(Role::Slider, label)
+        .rect()
+        .center()
+}
+
+/// The names and the bytes of the files of a folder.
+fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let read = |entry: std::fs::DirEntry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        (name, std::fs::read(entry.path()).unwrap())
+    };
+    let mut files: Vec<_> = entries.map(read).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
+    let folder = Folder::new();
+    let walk = folder.at("walk");
+    frames(&walk);
+    let before = bytes(&walk);
+    let Some(mut session) = open(&walk) else { return };
+    command(
+        &mut session,
+        Command::SetMethod(Method::from_name("bilaplacian").unwrap()),
+    );
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + egui::vec2(0.0, 6.0), top + egui::vec2(0.0, 16.0));
+    let own_first = session.shape();
+    session.stroke(on_ruler(&session, 0), on_ruler(&session, 6));
+    assert_eq!(document(&session).animation().frame(), 6);
+    let own = session.shape();
+    assert!(own != own_first);
+    for key in [Key::G, Key::Y, Key::Num1, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    session.key(Key::I, Modifiers::NONE);
+    session.settle();
+    let handle = document(&session).handles()[0].id;
+    let span = |session: &Session| document(session).animation().keys()[0].span(handle);
+    assert_eq!(span(&session), Some([0, COUNT - 1]));
+    let lifted = session.shape();
+    // The end of the span is dragged from the last frame to the ninth.
+    let (end, to) = (end_of_span(&session), on_ruler(&session, 9));
+    session.stroke(end, pos2(to.x, end.y));
+    assert_eq!(span(&session), Some([0, 9]));
+    assert_eq!(session.shape(), lifted);
+    command(&mut session, Command::GoToTime(10.0 / 24.0));
+    assert_eq!(document(&session).handles()[0].affine().translation, DVec3::ZERO);
+    command(&mut session, Command::GoToTime(8.0 / 24.0));
+    let eighth = session.shape();
+    // The command line's files for the exported edit are the same to the byte.
+    let edit = session.harness.state().editor().edit_file().unwrap();
+    let edit = folder.write("edit.json", edit.to_json());
+    let [own, theirs] = ["own", "theirs"].map(|name| folder.at(name));
+    session.harness.state_mut().export_frames(&own);
+    session.settle();
+    let said = session.harness.state().headline().unwrap_or_default().to_owned();
+    assert!(said.starts_with("Saved"), "{said}");
+    let words = [
+        "sequence",
+        walk.to_str().unwrap(),
+        "--edit",
+        edit.to_str().unwrap(),
+        "--output",
+        theirs.to_str().unwrap(),
+    ];
+    assert_eq!(run(words).status, 0);
+    let exported = bytes(&own);
+    assert!(exported == bytes(&theirs));
+    let is_same = |frame: usize| {
+        exported.iter().find(|(name, _)| *name == format!("ball-{frame}.obj"))
+            == before.iter().find(|(name, _)| *name == format!("ball-{frame}.obj"))
+    };
+    assert!(is_same(11) && is_same(10) && !is_same(8) && !is_same(6));
+    // Nothing is lost in a folder that has something in it.
+    session.harness.state_mut().export_frames(&own);
+    session.settle();
+    let said = session.harness.state().headline().unwrap_or_default().to_owned();
+    assert!(said.contains("not empty"), "{said}");
+    // A project names the sequence, relative to itself.
+    let project = folder.at("lift.pliant");
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    assert!(
+        std::fs::read_to_string(&project)
+            .unwrap()
+            .contains("\"sequence\": \"walk\"")
+    );
+    let keys = document(&session).animation().clone();
+    drop(session);
+    let mut session = open(&project).unwrap();
+    assert_eq!(*document(&session).animation(), keys);
+    assert_eq!(document(&session).animation().frames(), Some(COUNT));
+    session.settle();
+    let far = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(far(&session.shape(), &eighth) < 1e-12);
+    assert!(!session.harness.state().editor().view().unsaved);
+    assert!(bytes(&walk) == before, "no frame was written over");
+}
