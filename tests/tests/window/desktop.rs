@@ -258,7 +258,8 @@ fn a_drag_ends_when_the_window_loses_the_focus_with_the_button_down() {
     session.pointer(middle, None);
     session.pointer(middle, Some(true));
     session.pointer(middle + vec2(5.0, 0.0), None);
-    assert!(session.harness.state().editor().is_acting());
+    // A stroke begins once the structure that finds what is under the pointer is there.
+    session.wait_until(|session| session.harness.state().editor().is_acting());
     session.harness.event(Event::WindowFocused(false));
     session.harness.run_steps(3);
     assert!(!session.harness.state().editor().is_acting());

@@ -38,10 +38,11 @@ impl Session {
         self.whole.push(start.elapsed());
     }
 
-    /// Frames until all jobs have ended.
+    /// Frames until all jobs have ended and the camera stands still.
     pub fn settle(&mut self) {
         self.step();
-        while !self.harness.state().is_settled() {
+        let is_busy = |application: &Application| !application.is_settled() || application.editor().view().is_animating;
+        while is_busy(self.harness.state()) {
             std::thread::sleep(Duration::from_millis(1));
             self.step();
         }
