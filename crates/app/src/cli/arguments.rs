@@ -25,7 +25,7 @@ use crate::version::VERSION;
     disable_help_subcommand = true
 )]
 pub(crate) struct Arguments {
-    /// The file to open in the window; by default the built-in sample
+    /// The file to open in the window, or the folder or point cache of a sequence; by default the built-in sample
     pub file: Option<PathBuf>,
     /// Open the window with this edit on FILE
     #[arg(long, value_name = "EDIT.json", requires = "file")]

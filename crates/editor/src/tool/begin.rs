@@ -102,6 +102,11 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     match mode {
         mode if modifiers.shift && mode.paints_roles() => Some(Box::new(SmoothStroke::begin(context, pointer))),
         ToolMode::PaintStiffness => Some(Box::new(StiffnessStroke::begin(context, pointer))),
+        ToolMode::Correct if context.workspace.document.animation().frames().is_some() => {
+            let why = "A correction would fit only one frame of the sequence: move a handle and set a key.";
+            context.workspace.refuse(why);
+            None
+        }
         ToolMode::Correct => Some(correct::begin(context, pointer, &pick)),
         ToolMode::Flow => Some(Box::new(FlowStroke::begin(context, pointer))),
         ToolMode::Select => select(context, pointer, button, pick),

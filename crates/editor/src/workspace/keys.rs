@@ -10,7 +10,7 @@ use pliant_deform::Solve;
 
 use super::key_work::Play;
 use super::state::Workspace;
-use crate::document::{Animation, Aspect, HandleId, KeyFrame, KeyId};
+use crate::document::{Animation, Aspect, Document, HandleId, KeyFrame, KeyId, Placed};
 use crate::ease::Ease;
 use crate::jobs::{Activity, JobKind};
 use crate::timeline::{Posed, present_key};
@@ -32,7 +32,9 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
     let handles = pose.handles.iter().filter(|(id, _)| is_keyed(id));
     let key = KeyFrame {
         time: document.animation().time(),
-        handles: handles.map(|(id, placed)| (*id, *placed)).collect(),
+        handles: handles
+            .map(|(id, placed)| (*id, posed(document, *id, *placed)))
+            .collect(),
         ..KeyFrame::default()
     };
     let key = KeyFrame {
@@ -43,6 +45,17 @@ pub(crate) fn key_pose(workspace: &mut Workspace, place: usize) {
     };
     let name = format!("Key {}", pose.name);
     workspace.edit_keys(name, |animation| Some(animation.put_all(vec![key])));
+}
+
+/// The place of a pose's handle in a key. In another frame of a sequence it is moved as much from its place there.
+fn posed(document: &Document, id: HandleId, placed: Placed) -> Placed {
+    match document.handle(id).filter(|_| document.animation().frames().is_some()) {
+        Some(handle) => Placed {
+            pivot: handle.pivot,
+            ..placed
+        },
+        None => placed,
+    }
 }
 
 /// Shows a moment, in seconds.

@@ -255,3 +255,20 @@ fn other_frames_a_second_keep_the_frames_of_keys() {
         [Some(10), Some(20)]
     );
 }
+
+#[test]
+fn a_pose_moves_a_handle_as_much_in_every_frame() {
+    let (mut rig, id) = keyed();
+    rig.command(Command::KeepPose);
+    let turned = rig.editor.document().handles()[0].transform;
+    go_to(&mut rig, 35);
+    assert!(rig.editor.document().handles()[0].transform.is_identity());
+    rig.command(Command::TakePose(0));
+    rig.drain();
+    assert_eq!(rig.editor.document().handles()[0].transform, turned);
+    rig.undo();
+    rig.command(Command::KeyPose(0));
+    deliver(&mut rig);
+    assert_eq!(rig.editor.document().handles()[0].transform, turned);
+    assert_eq!(rig.editor.document().animation().keys()[2].span(id), Some([23, 39]));
+}

@@ -49,6 +49,23 @@ impl OpenSequence {
         path.is_dir() || cache_format(path).is_some() || is_gltf(path)
     }
 
+    /// A sentence about the sequence that a mesh file may belong to: its own animation of morph targets, or a point cache
+    /// with its name beside it. `None` without one.
+    pub fn beside(mesh: &Loaded, watch: &Watch) -> Option<String> {
+        let caches = ["pc2", "mdd"].map(|ending| mesh.path.with_extension(ending));
+        if let Some(cache) = caches.iter().find(|cache| cache.is_file()) {
+            return Some(format!(
+                "{} may move this mesh: choose Open sequence… to see its frames.",
+                shown(cache)
+            ));
+        }
+        let has_targets = is_gltf(&mesh.path) && !mesh.scene.morph_targets().is_empty();
+        let file = mesh.path.to_string_lossy();
+        let playback = has_targets.then(|| mesh.scene.morph_playback(&file, &watch.cancel));
+        let is_animated = playback.is_some_and(|playback| playback.is_ok_and(|playback| playback.is_some()));
+        is_animated.then(|| "Its morph targets are animated: choose Open sequence… to see the frames.".to_owned())
+    }
+
     /// The number of the frame that is this file, in a folder of frames.
     pub fn frame_of(&self, file: &Path) -> Option<usize> {
         match &self.source {

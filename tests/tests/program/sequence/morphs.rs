@@ -1,8 +1,11 @@
 //! The frames of a glTF's own animation of morph targets.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_engine::OpenSequence;
+use pliant_engine::watch::Watch;
 use pliant_tests::{Ended, diagonal, largest_distance, open, run};
 use serde_json::{Value, json};
 
@@ -102,4 +105,40 @@ fn an_edit_without_keys_gives_the_gltf_back_and_others_are_refused_in_words() {
         .apply(&take.folder.at("in/walk-0.off"), &apply, &still, &[])
         .done();
     edited(&take, "still.glb", one(), "no.glb", &[]).refused(1, &["still.glb", "no animation of morph targets"]);
+}
+
+#[test]
+fn every_kind_of_sequence_opens_with_the_same_shapes_frame_by_frame() {
+    let take = waving();
+    let mesh = take.folder.at("in/walk-0.off");
+    of(&take, "animate", mesh, "wave.json", "wave.pc2", &["--fps", "12"]).done();
+    let watch = Watch::default();
+    let open_sequence = |file: &str, mesh: &str| {
+        let mesh = Arc::new(open(&take.folder.at(mesh)));
+        OpenSequence::of(&take.folder.at(file), mesh, 12.0, &watch).unwrap()
+    };
+    let folder = open_sequence("frames", "frames/wave-0000.off");
+    let others = [
+        open_sequence("wave.pc2", "in/walk-0.off"),
+        open_sequence("wave.glb", "wave.glb"),
+    ];
+    assert_eq!(folder.frame_of(&take.folder.at("frames/wave-0003.off")), Some(3));
+    let bound = 3e-5 * diagonal(&bar().positions);
+    for sequence in others {
+        assert_eq!(sequence.count(), folder.count());
+        // In any order: no frame depends on another.
+        for frame in [6, 0, 3] {
+            let (own, wanted) = (
+                sequence.displacements(frame, &watch),
+                folder.displacements(frame, &watch),
+            );
+            let away = largest_distance(&own.unwrap(), &wanted.unwrap());
+            assert!(away < bound, "{}, frame {frame}: {away}", sequence.path().display());
+        }
+    }
+    let of_file = |name: &str| OpenSequence::beside(&open(&take.folder.at(name)), &watch);
+    assert!(of_file("wave.glb").unwrap().contains("wave.pc2"), "the cache beside it");
+    std::fs::remove_file(take.folder.at("wave.pc2")).unwrap();
+    assert!(of_file("wave.glb").unwrap().contains("morph targets"));
+    assert_eq!(of_file("in/walk-0.off"), None);
 }

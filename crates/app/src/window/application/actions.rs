@@ -268,7 +268,10 @@ impl Application {
                     (None, _) => self.choose(Purpose::ExportAnimation),
                 }
             }
-            FileCommand::ApplyEdit => self.choose(Purpose::ApplyEdit),
+            FileCommand::ApplyEdit => match command.unavailable_because(&self.editor) {
+                Some(why) => self.fail(why.to_owned()),
+                None => self.choose(Purpose::ApplyEdit),
+            },
             FileCommand::MergeOptions => self.dialogs.merge.open = true,
             FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
                 match (command.unavailable_because(&self.editor), command) {

@@ -102,6 +102,9 @@ impl FileCommand {
             Self::SaveAs | Self::SaveMorph if editor.document().animation().frames().is_some() => {
                 Some("A sequence has many shapes: save the project instead.")
             }
+            Self::ApplyEdit if editor.document().animation().frames().is_some() => {
+                Some("A sequence is open: apply the edit to its files by the command pliant sequence.")
+            }
             Self::ExportAnimation if editor.document().animation().frames().is_some() => {
                 Some("A sequence is open: choose Export frames… instead.")
             }

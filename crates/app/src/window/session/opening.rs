@@ -211,7 +211,10 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     };
     let loaded = Arc::new(loaded);
     let sequence = match sequence {
-        None => None,
+        None => {
+            notes.extend(OpenSequence::beside(&loaded, watch));
+            None
+        }
         Some((path, chosen)) => {
             let sequence = OpenSequence::of(&path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
             notes.extend(sequence.note().map(str::to_owned));
