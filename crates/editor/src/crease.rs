@@ -60,30 +60,52 @@ pub(crate) fn details(
     Ok(patch.free.iter().map(way).collect())
 }
 
-/// The vertices within each of these widths of some others along the surface, and two rings around them, ascending.
-pub(crate) fn beside<const N: usize>(
+/// The vertices within a width of some others along the surface, and two rings around them, ascending.
+pub(crate) fn beside(
     surface: &Surface,
     topology: &Topology,
     position: impl Fn(SurfaceVertex) -> DVec3,
     of: impl Iterator<Item = SurfaceVertex>,
-    widths: [f64; N],
-) -> [Vec<SurfaceVertex>; N] {
+    width: f64,
+) -> Vec<SurfaceVertex> {
+    let near = distances(surface, topology, position, of, width);
+    let is_in = with_rings(topology, near.iter().map(|(vertex, _)| *vertex));
+    let numbers = (0..).zip(is_in).filter(|(_, is_in)| *is_in);
+    numbers.map(|(vertex, _)| SurfaceVertex(vertex)).collect()
+}
+
+/// The vertices within a limit of some others along the surface with their distances, nearest first.
+pub(crate) fn distances(
+    surface: &Surface,
+    topology: &Topology,
+    position: impl Fn(SurfaceVertex) -> DVec3,
+    of: impl Iterator<Item = SurfaceVertex>,
+    limit: f64,
+) -> Vec<(SurfaceVertex, f64)> {
     let seeds: Vec<(SurfaceVertex, f64)> = of.map(|vertex| (vertex, 0.0)).collect();
     let mut search = DistanceSearch::default();
-    let largest = widths.into_iter().fold(0.0, f64::max);
-    let reached = search.within(&surface.triangles, topology, position, &seeds, largest);
-    widths.map(|width| {
-        let near = reached.iter().filter(|(_, distance)| *distance <= width);
-        let mut vertices: Vec<SurfaceVertex> = near.map(|(vertex, _)| *vertex).collect();
-        for _ in 0..RINGS {
-            let around = |v: &SurfaceVertex| topology.neighbours(*v).iter().copied();
-            let more: Vec<SurfaceVertex> = vertices.iter().flat_map(around).collect();
-            vertices.extend(more);
-            vertices.sort_unstable();
-            vertices.dedup();
+    search
+        .within(&surface.triangles, topology, position, &seeds, limit)
+        .to_vec()
+}
+
+/// For each vertex of the surface, whether it is one of these or in the two rings around them.
+pub(crate) fn with_rings(topology: &Topology, near: impl Iterator<Item = SurfaceVertex>) -> Vec<bool> {
+    let mut is_in = vec![false; topology.vertex_count()];
+    let mut rim: Vec<SurfaceVertex> = near.collect();
+    for vertex in &rim {
+        is_in[vertex.index()] = true;
+    }
+    for _ in 0..RINGS {
+        let mut ring = Vec::new();
+        for neighbour in rim.iter().flat_map(|vertex| topology.neighbours(*vertex)) {
+            if !std::mem::replace(&mut is_in[neighbour.index()], true) {
+                ring.push(*neighbour);
+            }
         }
-        vertices
-    })
+        rim = ring;
+    }
+    is_in
 }
 
 /// The vertices under a curve along the surface, from the one of `start` that is nearest to its beginning on: each is the

@@ -148,6 +148,11 @@ impl Editor {
         curve.crease()
     }
 
+    /// Returns true if that crease is narrower than the edges beside it, so that only the line itself moves.
+    pub fn is_crease_narrow(&self) -> bool {
+        self.workspace.is_crease_narrow()
+    }
+
     fn cursor(&self) -> Cursor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),

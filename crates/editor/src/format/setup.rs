@@ -275,8 +275,7 @@ impl HandleEntry {
                     Some(crease) => {
                         let position = |v: SurfaceVertex| surface.positions[v.index()];
                         let under = members.into_iter();
-                        let [beside] = crease::beside(surface, &model.topology, position, under, [crease.width()]);
-                        beside
+                        crease::beside(surface, &model.topology, position, under, crease.width())
                     }
                     None => members.into_iter().collect(),
                 })

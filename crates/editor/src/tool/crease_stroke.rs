@@ -144,7 +144,7 @@ impl Gesture for CreaseStroke {
         };
         let position = |vertex| workspace.position(vertex);
         let line = line.into_iter();
-        let [vertices] = crease::beside(&model.surface, &model.topology, position, line, [width]);
+        let vertices = crease::beside(&model.surface, &model.topology, position, line, width);
         let vertices = vertices.into_iter();
         let is_open = |vertex: &SurfaceVertex| workspace.vertex_access.may_be_painted(vertex.index());
         let vertices: Vec<SurfaceVertex> = vertices.filter(is_open).collect();

@@ -4,6 +4,7 @@
 //! differ from their sources; the code that makes a change need not know its consequences.
 
 use super::colour_revisions::{ColouredBy, Sources};
+use super::crease_width::measure_crease;
 use super::state::Workspace;
 use super::symmetry::take_symmetry;
 use crate::document::{Aspect, Paint, VertexAccess};
@@ -17,6 +18,7 @@ impl Workspace {
         self.follow_versions(activity);
         self.look_for_paint(activity);
         self.selection.drop_lost(&self.document);
+        measure_crease(self);
         self.drop_lost_keys();
         if !self.controls.is_empty() {
             let count = self.shown_controls().map_or(0, |shown| shown.positions.len());

@@ -1,7 +1,5 @@
 //! The width of the crease along the selected handle's curve, and the vertices of its handle that follow from it.
 
-use std::collections::BTreeSet;
-
 use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 
@@ -9,10 +7,16 @@ use super::curves::selected_curve;
 use super::painting::members;
 use super::state::Workspace;
 use crate::crease;
-use crate::document::{Crease, Document, HandleCurve, HandleId, HandleLine, Paint, Reach, put_curve};
+use crate::document::{Aspect, Crease, Document, HandleCurve, HandleId, HandleLine, Paint, Reach, put_curve};
 
 /// The line along which a crease was found is not quite its curve, so a handle has vertices up to this many widths away.
 const SLACK: f64 = 1.3;
+
+/// The edges at about as many vertices are measured.
+const MEASURED: usize = 256;
+
+/// A crease that is wider than this many edges has vertices beside its line.
+const WIDE: f64 = 2.0;
 
 /// Makes the crease along the curve wider or narrower, and its twin's: vertices that come beside it are the handle's, those
 /// that are no longer beside it are bare. What was painted by hand stays. While a widget is dragged, all follows from the
@@ -30,16 +34,23 @@ pub(crate) fn set_crease_width(workspace: &mut Workspace, width: f64) {
     let before = workspace.before_adjusting().clone();
     let twin = before.handle(handle).and_then(|handle| handle.twin);
     let mut wanted: Vec<(SurfaceVertex, Paint)> = Vec::new();
+    let mut distances = std::mem::take(&mut workspace.crease_distances);
     for id in std::iter::once(handle).chain(twin.map(|twin| twin.handle)) {
         let Some(curve) = curve_of(&before, id) else { continue };
-        let found = beside(
-            &before,
-            &model,
-            id,
-            &curve,
-            [curve.crease().map_or(width, |own| own.width()), width],
-        );
+        let old = curve.crease().map_or(width, |own| own.width());
+        let limit = if width < old { SLACK * old } else { width };
+        let near = distances.within(id, limit, |limit| {
+            let position = |vertex: SurfaceVertex| -> DVec3 {
+                model.surface.positions[vertex.index()] + before.rest()[vertex.index()]
+            };
+            let under = crease::under(&model.topology, position, &members(&before, id), curve.rest());
+            crease::distances(&model.surface, &model.topology, position, under.into_iter(), limit)
+        });
+        let found = beside(&before, &model, id, near, [old, width]).into_iter();
         wanted.extend(found.filter(|(vertex, _)| workspace.vertex_access.may_be_painted(vertex.index())));
+    }
+    if workspace.is_adjusting() {
+        workspace.crease_distances = distances;
     }
     let mut paint = before.paint().to_vec();
     for (vertex, own) in wanted {
@@ -63,6 +74,39 @@ pub(crate) fn set_crease_width(workspace: &mut Workspace, width: f64) {
     });
 }
 
+/// Compares the selected handle's crease with the edges beside it, once for each width and version of the paint: the window
+/// asks at every frame.
+pub(super) fn measure_crease(workspace: &mut Workspace) {
+    let selected = selected_curve(workspace).and_then(|(handle, curve)| Some((handle, curve.crease()?.width(), curve)));
+    let version = workspace.document.versions().of(Aspect::Paint);
+    let of = selected.as_ref().map(|(handle, width, _)| (*handle, *width, version));
+    if workspace.narrow_crease.1 == of {
+        return;
+    }
+    let is_narrow = |(handle, width, curve): (HandleId, f64, HandleCurve)| {
+        let model = workspace.model()?;
+        let position = |vertex: SurfaceVertex| -> DVec3 {
+            model.surface.positions[vertex.index()] + workspace.document.rest()[vertex.index()]
+        };
+        let members = members(&workspace.document, handle);
+        let measured = members.iter().step_by(1 + members.len() / MEASURED);
+        let edges =
+            measured.flat_map(|vertex| model.topology.neighbours(*vertex).iter().map(|other| (*vertex, *other)));
+        let (sum, count) = edges.fold((0.0, 0_u32), |(sum, count), (one, other)| {
+            (sum + position(one).distance(position(other)), count + 1)
+        });
+        let edge = sum / f64::from(count.max(1));
+        // A wide crease has too many vertices to ask them all, and more than its line.
+        let is_beside = |vertex: &SurfaceVertex| {
+            let position = position(*vertex);
+            let place = curve.rest().nearest(position);
+            (0.5 * edge..width).contains(&position.distance(curve.rest().position(place)))
+        };
+        Some(width < WIDE * edge && !members.iter().any(is_beside))
+    };
+    workspace.narrow_crease = (selected.and_then(is_narrow).unwrap_or(false), of);
+}
+
 fn curve_of(document: &Document, handle: HandleId) -> Option<HandleCurve> {
     document
         .handle(handle)?
@@ -77,24 +121,23 @@ fn beside(
     document: &Document,
     model: &Model,
     handle: HandleId,
-    curve: &HandleCurve,
+    near: &[(SurfaceVertex, f64)],
     [old, new]: [f64; 2],
-) -> impl Iterator<Item = (SurfaceVertex, Paint)> + use<> {
-    let position =
-        |vertex: SurfaceVertex| -> DVec3 { model.surface.positions[vertex.index()] + document.rest()[vertex.index()] };
-    let under = crease::under(&model.topology, position, &members(document, handle), curve.rest());
-    let widths = [old, SLACK * old, new];
-    let found = crease::beside(&model.surface, &model.topology, position, under.into_iter(), widths);
-    let is_narrower = new < old;
-    let [old, about_old, new] = found.map(BTreeSet::from_iter);
-    let former = if is_narrower { about_old } else { old.clone() };
+) -> Vec<(SurfaceVertex, Paint)> {
+    let within = |width: f64| {
+        let near = near.iter().take_while(|(_, distance)| *distance <= width);
+        crease::with_rings(&model.topology, near.map(|(vertex, _)| *vertex))
+    };
+    let (is_old, is_new) = (within(old), within(new));
+    let is_former = if new < old { within(SLACK * old) } else { is_old.clone() };
     let paint = document.paint();
-    let left = former
-        .difference(&new)
-        .filter(|vertex| paint[vertex.index()] == Paint::Handle(handle));
-    let may_get = |vertex: &&SurfaceVertex| matches!(paint[vertex.index()], Paint::Bare | Paint::Free);
-    let got = new.difference(&old).filter(may_get);
-    let left: Vec<(SurfaceVertex, Paint)> = left.map(|vertex| (*vertex, Paint::Bare)).collect();
-    let got: Vec<(SurfaceVertex, Paint)> = got.map(|vertex| (*vertex, Paint::Handle(handle))).collect();
-    left.into_iter().chain(got)
+    let change = |vertex: usize| {
+        let change = match paint[vertex] {
+            Paint::Handle(own) if own == handle && is_former[vertex] && !is_new[vertex] => Paint::Bare,
+            Paint::Bare | Paint::Free if is_new[vertex] && !is_old[vertex] => Paint::Handle(handle),
+            _ => return None,
+        };
+        Some((SurfaceVertex(vertex as u32), change))
+    };
+    (0..paint.len()).filter_map(change).collect()
 }

@@ -5,6 +5,7 @@ mod colours;
 mod consequences;
 mod control_selection;
 mod controls;
+mod crease_distances;
 mod crease_width;
 mod curves;
 mod dirty_colours;

@@ -9,6 +9,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::colour_revisions::Colours;
 use super::control_selection::ControlSelection;
+use super::crease_distances::CreaseDistances;
 use super::flow_play::FlowPlay;
 use super::frame_work::FrameWork;
 use super::key_work::KeyWork;
@@ -49,11 +50,15 @@ pub(crate) struct Workspace {
     pub(super) seen: Versions,
     /// Whether anything is painted, and the paint for which that was computed.
     pub(super) painted: (bool, Version),
+    /// Whether the selected handle's crease is narrower than the edges beside it, and for which it was measured.
+    pub(super) narrow_crease: (bool, Option<(HandleId, f64, Version)>),
     pub(crate) flow: FlowPlay,
     pub(crate) keys: KeyWork,
     pub(super) frames: FrameWork,
     /// The step of an active widget.
     adjusting: Option<Transaction>,
+    /// Distances from creases before that step.
+    pub(super) crease_distances: CreaseDistances,
     pub(super) mirroring: Option<Mirroring>,
     pub(super) symmetry: Symmetry,
     /// Both sides of the plane of symmetry, once they are found.
@@ -71,6 +76,7 @@ impl Workspace {
             history: History::new(&document, None, HISTORY_BYTES),
             seen: *document.versions(),
             painted: (false, document.versions().of(Aspect::Paint)),
+            narrow_crease: (false, None),
             document,
             selection: HandleSelection::default(),
             controls: ControlSelection::default(),
@@ -86,6 +92,7 @@ impl Workspace {
             keys: KeyWork::default(),
             frames: FrameWork::default(),
             adjusting: None,
+            crease_distances: CreaseDistances::default(),
             mirroring: None,
             symmetry: Symmetry::None,
             both_sides: None,
@@ -197,6 +204,11 @@ impl Workspace {
         self.step(name, |workspace| change(&mut workspace.document))
     }
 
+    /// Returns true if the selected handle's crease is narrower than the edges beside it, so that only the line moves.
+    pub(crate) fn is_crease_narrow(&self) -> bool {
+        self.narrow_crease.0
+    }
+
     /// Returns true if a widget is adjusting a step.
     pub(crate) fn is_adjusting(&self) -> bool {
         self.adjusting.is_some()
@@ -210,11 +222,13 @@ impl Workspace {
     /// All following steps are one, until it is committed or aborted.
     pub(crate) fn begin_adjusting(&mut self) {
         self.adjusting = Some(self.begin("Adjust"));
+        self.crease_distances = CreaseDistances::default();
     }
 
     /// Enters the adjusted step into the history.
     pub(crate) fn commit_adjusting(&mut self) {
         if let Some(transaction) = self.adjusting.take() {
+            self.crease_distances = CreaseDistances::default();
             self.end_scrubbing(transaction.before().animation());
             self.commit(&transaction);
         }
@@ -223,6 +237,7 @@ impl Workspace {
     /// Aborts the adjusted step.
     pub(crate) fn abort_adjusting(&mut self) {
         if let Some(transaction) = self.adjusting.take() {
+            self.crease_distances = CreaseDistances::default();
             self.abort(&transaction);
         }
     }

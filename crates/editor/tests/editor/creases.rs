@@ -238,6 +238,33 @@ fn a_widened_crease_is_the_one_that_a_wider_brush_finds_in_one_step_that_is_undo
 }
 
 #[test]
+fn a_crease_that_moves_only_its_line_is_known_to_be_narrow() {
+    let mut rig = ridges();
+    draw_beside_ridge(&mut rig);
+    rig.command(Command::SharpenCrease(1.5));
+    let whole = width(&rig);
+    let mut narrow = 0;
+    for share in [1.0, 0.5, 0.25, 0.1] {
+        rig.command(Command::SetCreaseWidth(share * whole));
+        rig.drain();
+        let ways = shape(&rig);
+        let moved = rig
+            .model
+            .surface
+            .positions
+            .iter()
+            .zip(&ways)
+            .filter(|(_, way)| way.length() > 1e-9);
+        // The rows of vertices beside the ridge are a tenth away from it.
+        let farthest = moved.map(|(p, _)| (p.x - 1.5).abs()).fold(0.0, f64::max);
+        let is_line = farthest < 0.05;
+        assert_eq!(rig.editor.is_crease_narrow(), is_line, "{share}: {farthest} of {whole}");
+        narrow += usize::from(is_line);
+    }
+    assert!((1..4).contains(&narrow), "{narrow}");
+}
+
+#[test]
 fn a_crease_without_width_is_refused() {
     let mut rig = sharpened("bilaplacian");
     let before = (width(&rig), rig.fingerprint());

@@ -430,6 +430,67 @@ fn a_pulled_chain_with_limits_bends_within_them_keeps_its_lengths_and_follows_a_
     }
 }
 
+/// A sequence of numbers that looks random (splitmix64).
+struct Random(u64);
+
+impl Random {
+    /// A number from 0 to 1.
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (mixed ^ (mixed >> 31)) as f64 / u64::MAX as f64
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        let (turn, height) = (TAU * self.share(), 2.0 * self.share() - 1.0);
+        let radius = (1.0 - height * height).sqrt();
+        DVec3::new(radius * turn.cos(), radius * turn.sin(), height)
+    }
+}
+
+#[test]
+fn narrow_limits_keep_hardly_a_chain_from_what_another_pose_reaches() {
+    let mut random = Random(7);
+    let (mut count, mut missed) = (0, 0);
+    for segments in [2, 3, 4, 6, 9] {
+        for number in 0..60 {
+            // Ranges of 6 to 24 degrees, some of which begin at a straight joint.
+            let bends: Vec<BendRange> = (0..=segments)
+                .map(|_| {
+                    let least = if number % 2 == 0 { 0.0 } else { random.share() };
+                    [least, least + 0.1 + 0.3 * random.share()]
+                })
+                .collect();
+            let lengths: Vec<f64> = (0..segments).map(|_| 0.5 + random.share()).collect();
+            let before = (number % 3 == 0).then_some(DVec3::X);
+            let mut pose = || {
+                let mut points = vec![DVec3::ZERO];
+                let mut along = before;
+                for (length, [least, most]) in lengths.iter().zip(&bends) {
+                    let ray = random.direction();
+                    let way = along.map_or(ray, |along| {
+                        let across = ray.reject_from(along).normalize_or(along.any_orthonormal_vector());
+                        let bend = least + (most - least) * random.share();
+                        (along * bend.cos() + across * bend.sin()).normalize()
+                    });
+                    points.push(points[points.len() - 1] + way * *length);
+                    along = Some(way);
+                }
+                points
+            };
+            let (from, to) = (pose(), pose());
+            let limits = JointLimits { bends: &bends, before };
+            let pulled = pulled_within(&from, to[segments], limits);
+            let whole: f64 = lengths.iter().sum();
+            count += 1;
+            missed += usize::from(pulled[segments].distance(to[segments]) > 1e-6 * whole);
+        }
+    }
+    assert!(missed * 100 <= count, "{missed} of {count}");
+}
+
 #[test]
 fn a_chain_without_limits_is_pulled_to_the_bit_as_with_free_ones() {
     let chain: Vec<DVec3> = (0..7)

@@ -34,4 +34,10 @@ pub(super) fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         .on_hover_text("Sets the distance from the crease up to which the surface gets sharper or flatter.");
     commands.adjust(&field, || Command::SetCreaseWidth(width));
     ui.end_row();
+    if editor.is_crease_narrow() {
+        ui.label("");
+        let note = "Narrower than the edges here: only the line itself moves.";
+        ui.add(egui::Label::new(egui::RichText::new(note).weak().small()).wrap());
+        ui.end_row();
+    }
 }
