@@ -12,6 +12,7 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
     if view.model.is_none() {
         return false;
     }
+    let is_sequence = editor.document().animation().frames().is_some();
     let (number, title, words) = if view.handles.is_empty() {
         (
             1,
@@ -19,14 +20,19 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
             "Hold the left button over the part to move, or press 7 and drag a limb. Turn the view with Alt, or drag \
              beside the model.",
         )
-    } else if !editor.document().is_displaced()
-        && (!editor.document().is_applied() || editor.document().animation().frames().is_some())
-    {
+    } else if !editor.document().is_displaced() && (!editor.document().is_applied() || is_sequence) {
         (
             2,
             "Drag it",
             "Point at an arrow or a ring and drag it, or press G, R or S. Then x, y or z chooses an axis, and digits \
              set the amount.",
+        )
+    } else if is_sequence {
+        (
+            3,
+            "Set a key",
+            "Press I: the key spreads over the frames around this one. Drag along the ruler to see them; File has \
+             Export frames…",
         )
     } else {
         (
