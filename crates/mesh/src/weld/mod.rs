@@ -15,9 +15,7 @@ use crate::drawn::drawn_triangles::Corners;
 use crate::findings::finding::{collect, sort_out};
 use crate::geometry::{bounds_of, is_without_area};
 use crate::topology::components::Components;
-use crate::{
-    Bounds, Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex,
-};
+use crate::{Bounds, Cancel, Cancelled, Drawn, DrawnVertex, Finding, Findings, Progress, Surface, SurfaceVertex};
 use closeness::Closeness;
 use joining::{Joined, join_equal};
 use nearby::join_nearest;
@@ -138,7 +136,7 @@ pub(crate) fn weld(
         first_bare,
         &mut findings.duplicate_triangles,
     );
-    let first_file_vertex = first_file_vertices(&drawn, positions.len());
+    let first_file_vertex = drawn.first_file_vertices(0..positions.len());
     let surface = Surface { positions, triangles };
     let (components, without_area) = rayon::join(
         || Components::of(&surface.triangles, &first_file_vertex),
@@ -212,18 +210,6 @@ fn joined_by_triangles(
 
 fn is_usable(position: &DVec3) -> bool {
     position.is_finite() && position.abs().max_element() <= LARGEST_COORDINATE
-}
-
-/// The lowest file vertex of each of `count` surface vertices.
-fn first_file_vertices(drawn: &DrawnSet, count: usize) -> Vec<FileVertex> {
-    let mut first_file_vertex = vec![FileVertex(u32::MAX); count];
-    for (surface_vertex, file_vertex) in drawn.surface_vertices().zip(drawn.file_vertices()) {
-        if let Some(surface_vertex) = surface_vertex {
-            let first = &mut first_file_vertex[surface_vertex.index()];
-            *first = file_vertex.min(*first);
-        }
-    }
-    first_file_vertex
 }
 
 fn has_unusable_corner(corners: [u32; 3]) -> bool {
