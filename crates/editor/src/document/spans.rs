@@ -27,8 +27,7 @@ impl KeyFrame {
 impl Animation {
     /// The span of a handle's keys that holds a frame.
     pub(crate) fn span_at(&self, handle: HandleId, frame: usize) -> Option<[usize; 2]> {
-        let mut spans = self.keys().iter().filter_map(|key| key.span(handle));
-        spans.find(|span| (span[0]..=span[1]).contains(&frame))
+        span_of(self.keys().iter().filter_map(|key| key.span(handle)), frame)
     }
 
     /// The keys of a handle in one of its spans, with their frames.
@@ -75,14 +74,14 @@ impl Animation {
             });
             let mut spans = joined(known.collect());
             for (frame, _) in own.iter().filter(|(_, span)| span.is_none()) {
-                if span_of(&spans, *frame).is_none() {
+                if span_of(spans.iter().copied(), *frame).is_none() {
                     let [least, most] = self.room(*frame, *frame, &spans);
                     spans.push([frame.saturating_sub(HALF).max(least), (frame + HALF).min(most)]);
                 }
             }
             let frames: Vec<usize> = self.keys().iter().map(|key| self.frame_of(key)).collect();
             for (key, frame) in Arc::make_mut(&mut self.keys).iter_mut().zip(frames) {
-                match span_of(&spans, frame).filter(|_| key.has(handle)) {
+                match span_of(spans.iter().copied(), frame).filter(|_| key.has(handle)) {
                     Some(span) => key.spans.insert(handle, span),
                     None => key.spans.remove(&handle),
                 };
@@ -113,6 +112,6 @@ fn joined(mut spans: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
 }
 
 /// The span that holds a frame.
-fn span_of(spans: &[[usize; 2]], frame: usize) -> Option<[usize; 2]> {
-    spans.iter().find(|span| (span[0]..=span[1]).contains(&frame)).copied()
+fn span_of(mut spans: impl Iterator<Item = [usize; 2]>, frame: usize) -> Option<[usize; 2]> {
+    spans.find(|span| (span[0]..=span[1]).contains(&frame))
 }

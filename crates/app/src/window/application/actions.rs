@@ -219,16 +219,7 @@ impl Application {
         };
         let open = self.session.open.as_ref();
         let is_own = open.is_some_and(|open| open.is_at(&path) || open.is_project_at(&path));
-        !matches!(
-            purpose,
-            Purpose::Open
-                | Purpose::OpenSequence
-                | Purpose::ApplyEdit
-                | Purpose::Append
-                | Purpose::LoadCage
-                | Purpose::AddExample
-        ) && path.is_file()
-            && !is_own
+        file_dialog::asks_to_save(purpose) && path.is_file() && !is_own
     }
 
     pub(in crate::window) fn may_write_over(&self) -> bool {

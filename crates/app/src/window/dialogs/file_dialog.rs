@@ -81,6 +81,11 @@ fn request(purpose: Purpose) -> Request {
     }
 }
 
+/// Returns true if a dialog for this purpose asks for a path to write to.
+pub fn asks_to_save(purpose: Purpose) -> bool {
+    request(purpose).asked == Asked::ToSave
+}
+
 /// The title of a dialog for this purpose.
 pub fn title(purpose: Purpose) -> &'static str {
     request(purpose).title
