@@ -7,7 +7,7 @@ use pliant_mesh::{BendRange, JointLimits, pulled_briefly, pulled_within};
 /// The most times that both sides of a pulled point between two pins answer each other.
 const MOST_ANSWERS: usize = 200;
 
-/// After so many answers, and again after as many, it is looked whether both sides still come nearer.
+/// The number of answers after which both sides are checked for whether they still come nearer.
 const LOOK: usize = 8;
 
 /// They do not meet if more than this share of the gap between them is left since the last look.

@@ -19,7 +19,7 @@ const FEW_PASSES: usize = 100;
 /// The distance from the target at which the end has arrived, as a share of the chain's length.
 const ARRIVED: f64 = 1e-10;
 
-/// After so many passes, and again after as many, it is looked whether a chain with limits still comes nearer.
+/// The number of passes after which a chain with limits is checked for whether it still comes nearer.
 const LOOK: usize = 32;
 
 /// It rests if more than this share of the way to the target is left since the last look.

@@ -11,7 +11,7 @@ const STEPS: usize = 60;
 /// The search has arrived within this share of the chain's length.
 const ARRIVED: f64 = 1e-10;
 
-/// After so many steps it is looked whether the end still comes nearer.
+/// The number of steps after which the search checks whether the end still comes nearer.
 const LOOK: usize = 8;
 
 /// The search rests if more than this share of the way is left since the last look.
@@ -161,7 +161,8 @@ impl Search<'_> {
         Pose { directions }
     }
 
-    /// The axes about which the joints turn, ascending by joint; of each the first is that which is turned last.
+    /// The axes about which the joints turn, ascending by joint. If a joint has two, its turn about the first is applied
+    /// last.
     fn axes(&self, pose: &Pose, points: &[DVec3]) -> Vec<Axis> {
         let free = [-LARGEST_TURN, LARGEST_TURN];
         let mut axes = Vec::with_capacity(2 * pose.directions.len());
