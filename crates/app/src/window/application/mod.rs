@@ -1,25 +1,31 @@
-//! The application: the window's state beside the editor's, and the queries from outside.
+//! The application: the window's state beside the editor's. The files beside this one have its methods, by subject.
 
-pub(in crate::window) mod actions;
+mod answers;
 pub(in crate::window) mod area;
 pub(in crate::window) mod arrivals;
+mod attachments;
+mod chosen_files;
 mod elsewhere;
+mod exports;
+mod file_commands;
 pub(in crate::window) mod frame;
 pub(in crate::window) mod layout;
 mod meshes;
+mod opening;
+mod queries;
 pub(in crate::window) mod redrawing;
+mod reloading;
 pub(in crate::window) mod saves;
+mod unsaved_work;
 pub(in crate::window) mod waiting_saves;
 
 use std::collections::{BTreeSet, VecDeque};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use eframe::egui;
-use glam::DVec3;
-use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
+use pliant_editor::{Command, Editor, Event, KeyMap};
 use pliant_mesh::Cancel;
 
 use self::layout::Layout;
@@ -31,8 +37,7 @@ use super::dialogs::question::Question;
 use super::files::app_directories::AppDirectories;
 use super::files::desktop::Desktop;
 use super::files::recovery::Recovery;
-use super::files::recovery::left::{left_in, remove};
-use super::files::rest_mesh::MeshSource;
+use super::files::recovery::left::left_in;
 use super::files::settings::SettingsFile;
 use super::input::Input;
 use super::input::event_queue::EventQueue;
@@ -42,11 +47,9 @@ use super::threads::interface_pool;
 use super::threads::message::Message;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
-use super::viewport::before::OriginalView;
 use super::viewport::beside::ViewsBeside;
 use super::widgets::{icon, theme};
-use crate::files::names::file_name;
-use crate::window::session::{Session, Source, meant_by};
+use crate::window::session::{Session, Source};
 use crate::window::viewport::pose_queue::PoseQueue;
 use crate::window::viewport::shown::Shown;
 use pliant_engine::EngineError;
@@ -216,84 +219,9 @@ impl Application {
         self.input.numpad.extend(digits);
     }
 
-    /// Returns true if the graphics device is lost, so that the window must be opened again.
-    pub fn has_lost_its_device(&self) -> bool {
-        self.viewport.is_lost()
-    }
-
     /// Loses the graphics device, to test that nothing else is lost.
     pub fn lose_device(&self) {
         self.viewport.lose_device();
-    }
-
-    /// The editor, for reading.
-    pub fn editor(&self) -> &Editor {
-        &self.editor
-    }
-
-    /// The path of the file that was last read or saved as the open one.
-    pub fn path(&self) -> Option<&Path> {
-        self.session.open.as_ref()?.path.as_deref()
-    }
-
-    /// Returns true if materials are requested and their images are still being decoded.
-    pub fn is_loading_textures(&self) -> bool {
-        self.editor.view().look.shading == Shading::Material && self.viewport.awaits_images()
-    }
-
-    /// Returns true if nothing is in progress: no job, no file being read or written, and the picture shows the present
-    /// shape.
-    pub fn is_settled(&self) -> bool {
-        let view = self.editor.view();
-        let shown = self
-            .viewport
-            .displacements()
-            .is_some_and(|shown| Arc::ptr_eq(shown, view.drawn));
-        let comparison = self.editor.comparison();
-        let compared = comparison.is_none_or(|comparison| self.beside.methods.are_settled(comparison));
-        let original = self
-            .beside
-            .original
-            .as_ref()
-            .is_none_or(|original| original.is_settled(&view));
-        let skins = self.beside.skins.are_settled(view.skins);
-        let drawn = self.redrawing.is_none() && self.shows_what_is_turned();
-        let is_idle = self.session.doing().is_none() && !self.is_saving() && !self.is_loading_textures();
-        view.settled && shown && compared && original && skins && drawn && is_idle
-    }
-
-    /// The shape in the GPU's buffers, per surface vertex, from the file's.
-    pub fn shown_displacements(&self) -> Option<&Arc<Vec<DVec3>>> {
-        self.viewport.displacements()
-    }
-
-    /// The place of the 3D view in the window, in points.
-    pub fn view_rect(&self) -> egui::Rect {
-        self.layout.view_rect
-    }
-
-    /// The number of times that the 3D view was drawn.
-    pub fn drawings(&self) -> u64 {
-        self.viewport.drawings()
-    }
-
-    /// The newest sentence about a file that was saved or could not be opened or saved.
-    pub fn headline(&self) -> Option<&str> {
-        match self.notes.headline.as_ref()? {
-            Note::Done(sentence) | Note::Saved(sentence, _) | Note::Failed(sentence) => Some(sentence),
-        }
-    }
-
-    /// The longest time that a frame has kept the window's thread busy since the last call, without the drawing itself.
-    pub fn take_longest_frame(&mut self) -> Duration {
-        std::mem::take(&mut self.longest_frame)
-    }
-
-    /// The time that drawing has kept the window's thread busy so far.
-    pub fn drawing_time(&self) -> Duration {
-        let original = self.beside.original.as_ref();
-        let original = original.map_or(Duration::ZERO, OriginalView::drawing_time);
-        self.viewport.drawing_time() + original + self.beside.methods.drawing_time()
     }
 
     /// Gives the editor a command, like a menu.
@@ -301,85 +229,6 @@ impl Application {
         self.last_change = Instant::now();
         self.editor.handle(Event::Command(command));
         self.follow_mesh();
-    }
-
-    /// Opens a file without asking whether unsaved work may be lost.
-    pub fn open(&mut self, path: PathBuf) {
-        let is_edit = path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let mesh = self.session.open.as_ref().map(|open| &open.mesh.source);
-        let source = match (is_edit, mesh) {
-            (false, mesh) => match (Source::file(path), mesh) {
-                (Source::Sequence { path, chosen, .. }, Some(MeshSource::File(open))) => Source::Sequence {
-                    path,
-                    chosen,
-                    open: Some(open.clone()),
-                },
-                (source, _) => source,
-            },
-            (true, Some(MeshSource::File(file))) => Source::Edited {
-                file: file.clone(),
-                edit: path,
-            },
-            (true, _) => {
-                return self.fail(format!(
-                    "{} is an edit: open the mesh that it is for first.",
-                    file_name(&path)
-                ));
-            }
-        };
-        self.session.load(source, &self.viewport.gpu(), &self.workers);
-    }
-
-    /// Opens the sequence that a person means by a file of it.
-    pub fn open_sequence(&mut self, file: PathBuf) {
-        let source = Source::Sequence {
-            path: meant_by(&file),
-            chosen: Some(file),
-            open: self.session.open.as_ref().and_then(|open| match &open.mesh.source {
-                MeshSource::File(open) => Some(open.clone()),
-                _ => None,
-            }),
-        };
-        self.session.load(source, &self.viewport.gpu(), &self.workers);
-    }
-
-    /// Gives the editor the frame of the sequence that it asks for, once it was read.
-    pub(super) fn follow_frames(&mut self, context: &egui::Context) {
-        let wanted = self.editor.view().wanted_frame;
-        if let Some(frame) = wanted
-            && let Some(shape) = self.session.frame(frame, &self.workers)
-        {
-            self.editor.handle(Event::Frame(frame, Ok(shape)));
-            context.request_repaint();
-        }
-    }
-
-    /// Writes unsaved work where the next session finds it.
-    pub(super) fn keep_for_recovery(&mut self) {
-        let (Some(recovery), Some(open)) = (&mut self.recovery, &self.session.open) else {
-            return;
-        };
-        let (key, unsaved) = (self.editor.snapshot_key(), self.editor.view().unsaved);
-        let Some(work) = recovery.note(
-            key,
-            unsaved,
-            || self.editor.snapshot(),
-            &open.mesh,
-            [open.path.as_deref(), open.project.as_deref()],
-        ) else {
-            // This session now keeps or has saved the recovered work.
-            if recovery.has(key) || !unsaved {
-                self.recovered_from.take().iter().for_each(|left| remove(left));
-            }
-            return;
-        };
-        self.workers.spawn(
-            "autosave",
-            move || Message::Autosaved(key, work.write()),
-            move |sentence| Message::Autosaved(key, Err(sentence)),
-        );
     }
 
     pub(super) fn fail(&mut self, sentence: String) {

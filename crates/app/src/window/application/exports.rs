@@ -1,0 +1,61 @@
+//! Copies of the unsaved work: an edit, a picture, an animation or the frames of a sequence.
+
+use std::path::Path;
+
+use pliant_engine::watch::Watch;
+use pliant_engine::{ExistingFrames, animation_path};
+
+use crate::window::application::Application;
+use crate::window::files::save_request::{AnimationToWrite, Content, FramesToWrite};
+
+impl Application {
+    /// Writes the document's unsaved changes.
+    pub(super) fn save_copy(&mut self, path: &Path, content: Content) {
+        // A failure before this is over.
+        self.notes.headline = None;
+        let mark = self.editor.save_mark();
+        self.session.save(path, content, mark, &self.workers);
+    }
+
+    /// Writes the edit over time, off the window's thread: a file for each frame if the format has one shape in a file.
+    pub fn export_animation(&mut self, path: &Path) {
+        let path = &animation_path(path);
+        let Some(open) = &self.session.open else { return };
+        let mesh = open.mesh.clone();
+        match self.editor.edit_file() {
+            Ok(edit) => {
+                let animation = AnimationToWrite {
+                    edit,
+                    fps: self.editor.document().animation().fps(),
+                    frames: ExistingFrames::Keep,
+                    mesh,
+                    dye: self.editor.document().fluid().kept.clone(),
+                    watch: Watch::default(),
+                };
+                self.save_copy(path, Content::Animation(Box::new(animation)));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    /// Writes all frames of the open sequence with the edit, off the window's thread.
+    pub fn export_frames(&mut self, path: &Path) {
+        let Some(open) = &self.session.open else { return };
+        let Some(sequence) = &open.sequence else { return };
+        let (place, mesh) = (sequence.path().to_owned(), open.loaded.path.clone());
+        match self.editor.edit_file() {
+            Ok(edit) => {
+                let frames = FramesToWrite {
+                    edit,
+                    cached_mesh: sequence.is_cache().then_some(mesh),
+                    sequence: place,
+                    fps: sequence.fps(),
+                    existing: ExistingFrames::Keep,
+                    watch: Watch::default(),
+                };
+                self.save_copy(path, Content::Frames(Box::new(frames)));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+}
