@@ -76,11 +76,11 @@ pub(super) const PIN_CURVE_POINTS: Entry<()> = Entry {
     action: Action::Do(|context, ()| pin_or_unpin_curve_points(context.workspace)),
 };
 
-/// Limits the bends at control points.
+/// Limits the bends at control points, or at the joint of a limb's part.
 pub(super) const SET_BEND_RANGE: Entry<[f64; 2]> = Entry {
     listed: &[],
     scope: Scope::Document,
-    unavailable: |state, _| without_curve_points(state),
+    unavailable: |state, _| without_joint(state),
     action: Action::Do(|context, range_deg| set_bend_range(context.workspace, range_deg)),
 };
 
@@ -112,6 +112,14 @@ fn without_curve_points(state: &State<'_>) -> Option<Reason> {
         let is_selected = !state.workspace.controls.is_empty();
         unless(is_selected, "No point of the curve is selected: click one.")
     })
+}
+
+fn without_joint(state: &State<'_>) -> Option<Reason> {
+    let selected = state.workspace.selected();
+    match selected.is_some_and(|handle| handle.line.is_none() && handle.parent.is_some()) {
+        true => state.unopened(),
+        false => without_curve_points(state),
+    }
 }
 
 fn without_curve(state: &State<'_>) -> Option<Reason> {

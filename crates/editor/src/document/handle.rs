@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 use pliant_mesh::MirrorPlane;
 
+use super::bend_range::FREE_BEND_DEG;
 use super::handle_colour::handle_colour;
 use super::handle_line::HandleLine;
 use super::handle_transform::HandleTransform;
@@ -46,6 +47,9 @@ pub struct Handle {
     pub twin: Option<Twin>,
     /// The handle with which it rides along.
     pub parent: Option<HandleId>,
+    /// The least and the most bend at its joint in degrees, from its parent's bone to its own, while both are parts of a
+    /// limb that is pulled as a whole.
+    pub bend_deg: [f64; 2],
     /// The line that its vertices follow before its transform moves them.
     pub line: Option<HandleLine>,
     /// The unit direction along which it is free, in world space: its transform holds it across this direction only, and
@@ -115,6 +119,7 @@ impl Handle {
             continuity: None,
             twin: None,
             parent: None,
+            bend_deg: FREE_BEND_DEG,
             line: None,
             free_along: None,
         }

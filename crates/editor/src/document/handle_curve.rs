@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{BendRange, Curve, CurveMotion, CurvePath, CurveRefused, MirrorPlane};
 
+use super::bend_range::{FREE_BEND_DEG, is_bend_range_deg};
 use super::crease::Crease;
 use super::free_point::FreePoint;
 
@@ -25,14 +26,6 @@ struct Parts {
     crease: Option<Crease>,
     snap: Option<f64>,
     free: Option<FreePoint>,
-}
-
-/// The bends of a control point without limits, in degrees.
-pub const FREE_BEND_DEG: [f64; 2] = [0.0, 180.0];
-
-/// Returns true if this is the least and the most bend of a joint, in degrees from 0 to 180.
-pub(crate) fn is_bend_range_deg([least, most]: [f64; 2]) -> bool {
-    FREE_BEND_DEG[0] <= least && least <= most && most <= FREE_BEND_DEG[1]
 }
 
 impl HandleCurve {

@@ -2,6 +2,7 @@
 
 mod access;
 mod animation;
+mod bend_range;
 mod carried_examples;
 mod content;
 mod continuation;
@@ -39,6 +40,8 @@ mod vertex_access;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub use animation::{Animation, KeyFrame, KeyId};
+pub use bend_range::FREE_BEND_DEG;
+pub(crate) use bend_range::is_bend_range_deg;
 pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use crease::{Crease, SHARPEN_RANGE};
@@ -49,8 +52,7 @@ pub(crate) use free_point::FreePoint;
 pub(crate) use handle::PART_RADII;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
-pub(crate) use handle_curve::is_bend_range_deg;
-pub use handle_curve::{FREE_BEND_DEG, HandleCurve};
+pub use handle_curve::HandleCurve;
 pub use handle_line::HandleLine;
 pub use handle_sketch::HandleSketch;
 pub use handle_transform::HandleTransform;

@@ -9,7 +9,7 @@ use super::mirror_plane::mirrored_transform;
 use super::state::Document;
 
 /// Makes `other`, which has its vertices, the twin of `id` across a plane: it gets its name, its mirrored pivot, its
-/// reach and softness, its mirrored free direction, and its mirrored transform.
+/// reach and softness, its joint's limits, its mirrored free direction, and its mirrored transform.
 pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId, plane: MirrorPlane) {
     let first = document.change_handle(id, |first| {
         first.twin = Some(Twin { handle: other, plane });
@@ -23,6 +23,7 @@ pub(crate) fn link_twins(document: &mut Document, id: HandleId, other: HandleId,
         // Mirrored motion needs mirrored pivots.
         second.pivot_place = PivotPlace::Picked;
         second.soft = first.soft;
+        second.bend_deg = first.bend_deg;
         second.free_along = first.free_along.map(|direction| plane.mirrored_vector(direction));
         second.line = first.line.as_ref().and_then(|line| line.mirrored(&plane));
         second.twin = Some(Twin { handle: id, plane });

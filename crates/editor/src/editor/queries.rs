@@ -132,10 +132,13 @@ impl Editor {
         })
     }
 
-    /// The least and the most bend at the first of the selected points of an open curve, in degrees; `None` if no point
-    /// between its ends is selected.
+    /// The least and the most bend, in degrees, at the first of the selected points of an open curve, or at the joint of
+    /// the selected part of a limb; `None` if no point between a curve's ends is selected, or if the part has no parent.
     pub fn selected_bend_deg(&self) -> Option<[f64; 2]> {
-        let (_, curve) = selected_curve(&self.workspace)?;
+        let Some((_, curve)) = selected_curve(&self.workspace) else {
+            let handle = self.workspace.selected()?;
+            return (handle.line.is_none() && handle.parent.is_some()).then_some(handle.bend_deg);
+        };
         let joints = 1..curve.rest().points().len() as u32 - 1;
         let selected = self.workspace.controls.points().iter();
         let joint = selected.copied().find(|point| joints.contains(point))?;

@@ -27,7 +27,7 @@ use super::strength::strength_kind;
 use super::transform::optional_vector;
 use super::version::{EDIT_VERSION, check_version};
 use crate::HandleTransform;
-use crate::document::{HandleCurve, HandleLine, HandleSketch};
+use crate::document::{HandleCurve, HandleLine, HandleSketch, is_bend_range_deg};
 
 /// The smallest and the largest stiffness of an edit.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
@@ -118,6 +118,10 @@ pub struct HandleEntry {
     /// window. Transforms are absolute, so it changes no shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parent: Option<u32>,
+    /// The least and the most bend at its joint in degrees, from 0 (straight) to 180, while it is pulled with its parent
+    /// as a whole limb in the window; it changes no shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bend: Option<[f64; 2]>,
 }
 
 /// The members in the file.
@@ -502,6 +506,13 @@ impl HandleEntry {
             continuity_kind()
                 .check(value)
                 .map_err(|error| error.under("continuity"))?;
+        }
+        if let Some(range) = self.bend.filter(|range| !is_bend_range_deg(*range)) {
+            return Err(EditError::OutOfRange {
+                place: "bend".to_owned(),
+                found: format!("{}, {}", range[0], range[1]),
+                allowed: "the least and the most angle, from 0 to 180 degrees".to_owned(),
+            });
         }
         Ok(())
     }

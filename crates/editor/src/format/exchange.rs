@@ -12,7 +12,9 @@ use super::examples::entries_of;
 use super::pivoted::{with_pivot, without_pivot};
 use super::project::StoredKept;
 use super::selector::ranges_of;
-use crate::document::{Content, Document, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed};
+use crate::document::{
+    Content, Document, FREE_BEND_DEG, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed,
+};
 use crate::region::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
@@ -97,6 +99,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 soft: handle.soft,
                 continuity: handle.continuity,
                 parent: parent_place(handle.parent),
+                bend: Some(handle.bend_deg).filter(|range| *range != FREE_BEND_DEG),
             });
         }
     }
@@ -192,6 +195,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             soft: setup.soft[index],
             continuity: edit.handles[index].continuity,
             parent: edit.handles[index].parent.map(|place| HandleId(place as u16)),
+            bend_deg: edit.handles[index].bend.unwrap_or(FREE_BEND_DEG),
             line: handle.line.clone(),
             ..Handle::new(id, handle.name.clone())
         });

@@ -2,7 +2,7 @@
 
 use super::state::Workspace;
 use crate::document::{
-    Crease, FREE_BEND_DEG, HandleCurve, HandleId, HandleLine, SHARPEN_RANGE, is_bend_range_deg, put_curve,
+    Crease, FREE_BEND_DEG, Handle, HandleCurve, HandleId, HandleLine, SHARPEN_RANGE, is_bend_range_deg, put_curve,
 };
 
 /// The most control points of a curve that is drawn and divided by hand.
@@ -86,16 +86,21 @@ pub(crate) fn pin_or_unpin_curve_points(workspace: &mut Workspace) {
     change_joints(workspace, name, handle, |curve| curve.pinned_at(pinned.clone()));
 }
 
-/// Gives the selected control points the least and the most bend, in degrees. The curve keeps its shape until one of its
-/// points is pulled.
+/// Gives the selected control points of a curve, or the joint of a handle without one, the least and the most bend, in
+/// degrees. Nothing moves until the chain or the limb is pulled.
 pub(crate) fn set_bend_range(workspace: &mut Workspace, range_deg: [f64; 2]) {
-    let Some((handle, curve)) = selected_curve(workspace) else {
-        return;
-    };
     if !is_bend_range_deg(range_deg) {
         workspace.refuse("The bend is out of range: enter 0° to 180°, the least first.");
         return;
     }
+    let Some((handle, curve)) = selected_curve(workspace) else {
+        if let Some(handle) = workspace.selected().map(|handle| handle.id) {
+            change_both(workspace, "Limit the bend", handle, |handle| {
+                handle.bend_deg = range_deg
+            });
+        }
+        return;
+    };
     let points = 0..curve.rest().points().len();
     let selected = &workspace.controls;
     let bend = |point: usize| match selected.contains(point as u32) {
@@ -125,15 +130,20 @@ pub(crate) fn sharpen_crease(workspace: &mut Workspace, sharpen: f64) {
 
 /// Changes the joints of a handle's curve and of its twin's.
 fn change_joints(workspace: &mut Workspace, name: &str, handle: HandleId, change: impl Fn(HandleCurve) -> HandleCurve) {
+    change_both(workspace, name, handle, |handle| {
+        let curve = handle.line.as_ref().and_then(HandleLine::curve).cloned();
+        handle.line = curve
+            .map(|curve| HandleLine::Curve(change(curve)))
+            .or(handle.line.take());
+    });
+}
+
+/// Changes a handle and its twin in the same way.
+fn change_both(workspace: &mut Workspace, name: &str, handle: HandleId, change: impl Fn(&mut Handle)) {
     let twin = workspace.document.handle(handle).and_then(|handle| handle.twin);
     workspace.change(name, |document| {
         for id in std::iter::once(handle).chain(twin.map(|twin| twin.handle)) {
-            document.change_handle(id, |handle| {
-                let curve = handle.line.as_ref().and_then(HandleLine::curve).cloned();
-                handle.line = curve
-                    .map(|curve| HandleLine::Curve(change(curve)))
-                    .or(handle.line.take());
-            });
+            document.change_handle(id, &change);
         }
     });
 }

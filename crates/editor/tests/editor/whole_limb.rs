@@ -1,9 +1,14 @@
 //! The pose brush with *Whole limb*: one drag of a hand bends shoulder, elbow and wrist.
 #![allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 
+use std::sync::Arc;
+
 use crate::rig::{Rig, VIEWPORT_PX};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
-use pliant_editor::{Button, Command, Event, Handle, Key, Modifiers, Pointer, Symmetry, ToolMode};
+use pliant_editor::{
+    Beginning, Button, Command, Event, Handle, Key, MeshReference, Modifiers, Pointer, Symmetry, ToolMode,
+    geometry_hash,
+};
 use pliant_mesh::{Drawn, shapes};
 
 /// The narrow places of the arms of [`body_with_jointed_arms`].
@@ -236,4 +241,77 @@ fn with_symmetry_the_other_arm_follows() {
         other.centre()
     );
     assert!(hand.centre().distance(hand.pivot) > 0.1);
+}
+
+#[test]
+fn a_limited_joint_bends_within_its_range_on_both_sides_and_later_too() {
+    let mut rig = open();
+    rig.command(Command::SetSymmetry(Symmetry::Axis(0)));
+    rig.drain();
+    let (_, hand_px) = seen(&rig, DVec3::new(5.3, 0.0, 0.0));
+    drag(&mut rig, hand_px, DVec2::new(-10.0, -10.0), Modifiers::NONE);
+    let parts = |rig: &Rig| -> Vec<Handle> {
+        let handles = rig.editor.document().handles().iter();
+        handles.filter(|handle| handle.pivot.x > 0.0).cloned().collect()
+    };
+    let elbow_bend_deg = |rig: &Rig| {
+        let centres: Vec<DVec3> = parts(rig).iter().map(Handle::centre).collect();
+        (centres[1] - centres[0])
+            .angle_between(centres[2] - centres[1])
+            .to_degrees()
+    };
+    assert_eq!(rig.editor.selected_bend_deg(), Some([0.0, 180.0]), "the hand");
+    let shoulder = parts(&rig)[0].id;
+    rig.command(Command::SelectHandle(shoulder));
+    assert_eq!(
+        rig.editor.selected_bend_deg(),
+        None,
+        "a part without a parent has no joint to limit"
+    );
+
+    let elbow = parts(&rig)[1].id;
+    rig.command(Command::SelectHandle(elbow));
+    let before = rig.fingerprint();
+    rig.command(Command::SetBendRange([30.0, 40.0]));
+    assert_eq!(rig.editor.selected_bend_deg(), Some([30.0, 40.0]));
+    let limited = |rig: &Rig| {
+        let handles = rig.editor.document().handles().iter();
+        handles.filter(|handle| handle.bend_deg == [30.0, 40.0]).count()
+    };
+    assert_eq!(limited(&rig), 2, "the other arm's elbow, too");
+    rig.undo();
+    assert_eq!(rig.fingerprint(), before, "the limits are one step");
+    rig.command(Command::Redo);
+    rig.command(Command::SetBendRange([50.0, 40.0]));
+    assert_eq!(limited(&rig), 2, "no range is refused");
+
+    for by_px in [
+        DVec2::new(-90.0, -70.0),
+        DVec2::new(60.0, 200.0),
+        DVec2::new(300.0, 0.0),
+        DVec2::new(-200.0, 0.0),
+    ] {
+        let hand = parts(&rig)[2].affine().transform_point3(DVec3::new(5.3, 0.0, 0.0));
+        let (_, hand_px) = seen(&rig, hand);
+        drag(&mut rig, hand_px, by_px, Modifiers::NONE);
+        let bend = elbow_bend_deg(&rig);
+        assert!((30.0 - 1e-6..=40.0 + 1e-6).contains(&bend), "{by_px}: {bend}");
+    }
+
+    let mesh = MeshReference {
+        name: None,
+        path: Some("body.off".to_owned()),
+        geometry: geometry_hash(&rig.model),
+    };
+    let project = rig.editor.snapshot().unwrap().project(mesh).to_json();
+    let edit = rig.editor.edit_file().unwrap().to_json();
+    for text in [project, edit] {
+        rig.send(Event::Opened {
+            model: Arc::clone(&rig.model),
+            name: "a body".to_owned(),
+            beginning: Some(Beginning::parse(&text).unwrap()),
+        });
+        rig.drain();
+        assert_eq!(limited(&rig), 2, "files keep them");
+    }
 }

@@ -1,4 +1,4 @@
-//! The limits of a chain's joint in numbers.
+//! The limits of the joint of a chain or of a limb's part in numbers.
 
 use eframe::egui;
 use pliant_editor::{Command, Editor, FREE_BEND_DEG};
@@ -8,12 +8,12 @@ use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
 
 const HOVERS: [&str; 2] = [
-    "Sets the least bend at the selected point while Chain pulls another one: a knee that is never straight does not bend \
-     the wrong way.",
-    "Sets the most bend at the selected point while Chain pulls another one: 0° is straight.",
+    "Sets the least bend of this joint while Chain or Whole limb pulls: a knee that is never straight does not bend the \
+     wrong way.",
+    "Sets the most bend of this joint while Chain or Whole limb pulls: 0° is straight.",
 ];
 
-/// Shows the least and the most bend at the selected points of the handle's curve, if there are such points.
+/// Shows the least and the most bend at the selected points of the handle's curve, or at the joint of a limb's part.
 pub(super) fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let Some(range_deg) = editor.selected_bend_deg() else {
         return;

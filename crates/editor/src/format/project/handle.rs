@@ -5,7 +5,10 @@ use pliant_deform::CONTINUITY_RANGE;
 use pliant_mesh::MirrorPlane;
 use serde::{Deserialize, Serialize};
 
-use crate::document::{Handle, HandleCurve, HandleId, HandleLine, HandleSketch, PivotPlace, Twin, followed, means};
+use crate::document::{
+    FREE_BEND_DEG, Handle, HandleCurve, HandleId, HandleLine, HandleSketch, PivotPlace, Twin, followed,
+    is_bend_range_deg, means,
+};
 use crate::format::stored_field::Ranges;
 use crate::warning::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
@@ -41,6 +44,9 @@ pub(super) struct StoredHandle {
     /// The number of the handle with which it rides along.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) parent: Option<u16>,
+    /// The least and the most bend at its joint in degrees, if it is limited.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    bend: Option<[f64; 2]>,
     /// The curve that its vertices follow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     curve: Option<HandleCurve>,
@@ -131,6 +137,7 @@ impl StoredHandle {
                 at: twin.plane.distance(),
             }),
             parent: handle.parent.map(|parent| parent.0),
+            bend: Some(handle.bend_deg).filter(|range| *range != FREE_BEND_DEG),
             free_along: handle.free_along.map(|direction| direction.to_array()),
             curve: handle.line.as_ref().and_then(HandleLine::curve).cloned(),
             sketch: handle.line.as_ref().and_then(HandleLine::sketch).cloned(),
@@ -161,11 +168,12 @@ impl StoredHandle {
         if free_along == Some(None)
             || is_reach_refused
             || refused_weight
+            || self.bend.is_some_and(|range| !is_bend_range_deg(range))
             || self.curve.as_ref().is_some_and(|curve| curve.snap().is_some())
             || self.twin.is_some_and(|twin| twin.plane().is_none())
         {
             return Err(EditError::Project(format!(
-                "the handle `{}` has an invalid reach, weight, continuity, free direction, curve or twin: save it again",
+                "the handle `{}` has an invalid reach, weight, continuity, bend, free direction, curve or twin: save it again",
                 shortened(&self.name)
             )));
         }
@@ -205,6 +213,7 @@ impl StoredHandle {
                 })
             }),
             parent: self.parent.map(HandleId),
+            bend_deg: self.bend.unwrap_or(FREE_BEND_DEG),
             line: self.line(),
             free_along: self.free_along.map(DVec3::from_array),
             ..Handle::new(id, self.name.clone())

@@ -1,7 +1,7 @@
 //! A limb that bends at all its joints, so that the grabbed point follows the pointer: inverse kinematics.
 
 use glam::{DQuat, DVec2, DVec3};
-use pliant_mesh::pulled_chain;
+use pliant_mesh::{BendRange, JointLimits, pulled_within};
 
 use crate::document::{HandleId, HandleTransform, Transaction, accumulated};
 use crate::tool::constraint::on_plane;
@@ -31,6 +31,8 @@ pub(super) struct Reaching {
     parts: Vec<Part>,
     /// The joints and the grabbed point at the beginning.
     points: Vec<DVec3>,
+    /// The bends that the joints may have.
+    bends: Vec<BendRange>,
     /// The same now.
     pulled: Vec<DVec3>,
     pub(super) is_armed: bool,
@@ -48,10 +50,11 @@ impl Reaching {
             workspace.refuse(why);
             return None;
         }
-        let (mut parts, mut points) = (Vec::new(), Vec::new());
+        let (mut parts, mut points, mut bends) = (Vec::new(), Vec::new(), Vec::new());
         for &id in handles {
             let handle = workspace.document.handle(id)?;
             points.push(handle.centre());
+            bends.push(handle.bend_deg.map(f64::to_radians));
             parts.push(Part {
                 handle: id,
                 pivot: handle.pivot,
@@ -65,6 +68,7 @@ impl Reaching {
             parts,
             pulled: points.clone(),
             points,
+            bends,
             is_armed: false,
         })
     }
@@ -76,7 +80,11 @@ impl Reaching {
         };
         let ray = view.camera().ray(position_px, view.viewport_px());
         let target = on_plane(ray, grip, view.camera().forward()).unwrap_or(grip);
-        self.pulled = pulled_chain(&self.points, target);
+        let limits = JointLimits {
+            bends: &self.bends,
+            before: None,
+        };
+        self.pulled = pulled_within(&self.points, target, limits);
         let turns = turns(&self.points, &self.pulled);
         let put: Vec<(HandleId, HandleTransform)> = (self.parts.iter().zip(&turns).enumerate())
             .map(|(place, (part, turn))| {
@@ -115,6 +123,8 @@ fn turns(from: &[DVec3], to: &[DVec3]) -> Vec<DQuat> {
 
 #[cfg(test)]
 mod tests {
+    use pliant_mesh::pulled_chain;
+
     use super::*;
 
     #[test]
