@@ -7,10 +7,11 @@
 use std::sync::Arc;
 
 use pliant_deform::{Budget, Ordering};
-use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress};
 
 use super::both_sides::BothSides;
 use super::compared::Compared;
+use super::enclosed::Enclosed;
 use super::flowed::Flowed;
 use super::inspected::Inspected;
 use super::intersections::Intersections;
@@ -139,8 +140,8 @@ jobs! {
         is_awaited: true,
         is_named: true,
     };
-    /// The vertices inside an outline on the screen, ascending.
-    enclose: Enclose(Vec<SurfaceVertex>) = Row { doing: "finding the enclosed vertices", is_awaited: true, is_named: true };
+    /// The vertices inside an outline on the screen, or along a line.
+    enclose: Enclose(Enclosed) = Row { doing: "finding the enclosed vertices", is_awaited: true, is_named: true };
     /// Another method's result for the edit.
     compare: Compare(Box<Compared>) = Row { doing: "comparing methods", is_awaited: false, is_named: false };
     /// Weights or base of the present binding, for display.

@@ -14,7 +14,7 @@ use crate::crease;
 use crate::document::{Crease, HandleCurve, HandleLine};
 use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, Enclosed};
 use crate::region::displaced;
 use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
@@ -126,15 +126,17 @@ impl Gesture for CreaseStroke {
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
             let surface = displaced(&model.surface, &displacements);
-            Ok(feature_line(&surface, &model.topology, &stroke, is_closed, width).unwrap_or_default())
+            let line = feature_line(&surface, &model.topology, &stroke, is_closed, width);
+            Ok(line.unwrap_or_default().into())
         });
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.width = Some(width);
         Next::Stay
     }
 
-    fn found(&mut self, context: &mut Context<'_>, line: Vec<SurfaceVertex>) -> Next {
+    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Next {
         let workspace = &*context.workspace;
+        let line = found.vertices;
         let places: Vec<DVec3> = line.iter().map(|&vertex| workspace.position(vertex)).collect();
         let width = self.width.take();
         let curve = width.and_then(|width| self.curve(&places, width));

@@ -2,6 +2,7 @@
 //! A job finds the limb around a spine.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Curve, SurfaceVertex, triangles_under};
@@ -14,16 +15,18 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
+use super::uncut_reach::uncut_reach;
 use crate::document::{HandleCurve, HandleLine};
 use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, Enclosed};
 use crate::view::{Cursor, Picking, View};
 use crate::workspace::Workspace;
 
 const SPINE_POINTS: usize = 5;
 
-/// The reach of a spine in half thicknesses, and that of a curve on the surface in its lengths.
+/// The least and the most reach of a spine in half thicknesses, and the reach of a curve on the surface in its lengths.
+const SPINE_LEAST_REACH: f64 = 0.75;
 const SPINE_REACH: f64 = 2.5;
 const CURVE_REACH: f64 = 0.4;
 
@@ -95,8 +98,7 @@ impl CurveStroke {
         let curve = HandleCurve::at_rest_through(points, is_closed).ok()?;
         if self.shape == StrokeShape::Spine {
             let seen = samples.iter().map(|sample| sample.pick.vertex).collect();
-            let reach = SPINE_REACH * half;
-            return Some((Drawn { curve, reach }, Around::Limb(half, seen)));
+            return Some((Drawn { curve, reach: 0.0 }, Around::Limb(half, seen)));
         }
         let under = under(curve.rest(), &samples, &picking);
         let reach = CURVE_REACH * curve.rest().length();
@@ -109,9 +111,19 @@ impl CurveStroke {
             return;
         };
         let (shape, curve) = (workspace.document.from_file().clone(), drawn.curve.clone());
+        let rest = Arc::clone(&workspace.document.rest);
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
-            Ok(around(curve.rest(), half, &seen, &model, &shape))
+            let vertices = around(curve.rest(), half, &seen, &model, &shape);
+            let reach = uncut_reach(
+                &model,
+                &rest,
+                &vertices,
+                [SPINE_LEAST_REACH * half, SPINE_REACH * half],
+                cancel,
+            )?;
+            let reach = Some(reach);
+            Ok(Enclosed { vertices, reach })
         });
         workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.spine = Some(drawn);
@@ -200,9 +212,11 @@ impl Gesture for CurveStroke {
         }
     }
 
-    fn found(&mut self, context: &mut Context<'_>, limb: Vec<SurfaceVertex>) -> Next {
-        match self.spine.take() {
-            Some(drawn) if !limb.is_empty() => self.finish(context, drawn, limb),
+    fn found(&mut self, context: &mut Context<'_>, limb: Enclosed) -> Next {
+        match self.spine.take().zip(limb.reach) {
+            Some((drawn, reach)) if !limb.vertices.is_empty() => {
+                self.finish(context, Drawn { reach, ..drawn }, limb.vertices)
+            }
             _ => self.refuse(context),
         }
     }

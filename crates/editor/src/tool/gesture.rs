@@ -4,12 +4,11 @@
 //! if something else interrupts it; an aborted gesture leaves no trace.
 
 use glam::DVec2;
-use pliant_mesh::SurfaceVertex;
 
 use super::context::Context;
 use super::overlay::Lit;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, Enclosed};
 use crate::view::{ControlShape, Cursor, Readout, View};
 use crate::workspace::Workspace;
 
@@ -97,8 +96,8 @@ pub(crate) trait Gesture: std::fmt::Debug {
         })
     }
 
-    /// A job has found the vertices inside the outline.
-    fn found(&mut self, _context: &mut Context<'_>, _inside: Vec<SurfaceVertex>) -> Next {
+    /// A job has found the vertices inside the outline, or along the line.
+    fn found(&mut self, _context: &mut Context<'_>, _found: Enclosed) -> Next {
         Next::Stay
     }
 

@@ -52,6 +52,7 @@ mod symmetry;
 mod taken_handle;
 mod transform;
 mod transform_measure;
+mod uncut_reach;
 mod widen;
 
 pub(crate) use adjust::Adjust;

@@ -1,7 +1,6 @@
 //! A lasso or a box over the view: when the button goes up, the vertices inside are painted like those of a stroke.
 
 use glam::DVec2;
-use pliant_mesh::SurfaceVertex;
 
 use super::context::Context;
 use super::enclosed::Search;
@@ -11,7 +10,7 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, Enclosed};
 use crate::view::{Cursor, View};
 use crate::workspace::Workspace;
 
@@ -97,17 +96,18 @@ impl Gesture for OutlineStroke {
         self.moved(context, pointer);
         let (outline_px, depth) = (self.outline_px(), context.settings.depth);
         let Some(search) = Search::of(context.workspace, context.view, &outline_px, depth) else {
-            return self.found(context, Vec::new());
+            return self.found(context, Enclosed::default());
         };
-        let work = Box::new(move |progress: &_, cancel: &_| Ok(search.run(progress, cancel)?));
+        let work = Box::new(move |progress: &_, cancel: &_| Ok(search.run(progress, cancel)?.into()));
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.phase = Phase::Looking;
         Next::Stay
     }
 
-    fn found(&mut self, context: &mut Context<'_>, inside: Vec<SurfaceVertex>) -> Next {
-        self.stroke
-            .finish_with(context.workspace, |stroke, workspace| stroke.take(workspace, inside));
+    fn found(&mut self, context: &mut Context<'_>, inside: Enclosed) -> Next {
+        self.stroke.finish_with(context.workspace, |stroke, workspace| {
+            stroke.take(workspace, inside.vertices);
+        });
         Next::End
     }
 

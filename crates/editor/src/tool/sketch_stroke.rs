@@ -11,7 +11,7 @@ use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::document::{HandleLine, HandleSketch};
 use crate::input::{Button, Pointer};
-use crate::jobs::Activity;
+use crate::jobs::{Activity, Enclosed};
 use crate::outline;
 use crate::region::displaced;
 use crate::view::{Cursor, View};
@@ -127,18 +127,19 @@ impl Gesture for SketchStroke {
             };
             let line = meant.line();
             if !begins_at(matched.first(), line[0]) || !begins_at(matched.last(), line[line.len() - 1]) {
-                return Ok(Vec::new());
+                return Ok(Enclosed::default());
             }
             let mut vertices: Vec<SurfaceVertex> = matched.into_iter().map(|(vertex, _)| vertex).collect();
             vertices.sort_unstable();
-            Ok(vertices)
+            Ok(vertices.into())
         });
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.sketch = Some(sketch);
         Next::Stay
     }
 
-    fn found(&mut self, context: &mut Context<'_>, outline: Vec<SurfaceVertex>) -> Next {
+    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Next {
+        let outline = found.vertices;
         let Some(sketch) = self.sketch.take().filter(|_| !outline.is_empty()) else {
             let why = "The line leads from no outline to none: begin and end it at the edge of the model that you see.";
             return self.refuse(context, why);

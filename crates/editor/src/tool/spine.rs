@@ -4,12 +4,16 @@
 //! find the limb's walls, in depth and beside the stroke, and the sample moves half way between them.
 
 use glam::DVec3;
-use pliant_mesh::{Curve, Model, SurfaceVertex};
+use pliant_mesh::{Curve, Model, SurfaceVertex, Topology};
 
 use crate::view::{Pick, Picking, Ray};
 
 /// The limb around a spine has the vertices within this many of its half thicknesses.
 const GIRTH: f64 = 1.6;
+
+/// A vertex turns away from the spine of its limb if the cosine of its normal and the way to it is at least this. A
+/// crotch, from which a stroke on a thigh would run over to the other one, has a smaller one.
+const LEAST_FACING: f64 = 0.2;
 
 /// Walls that are farther apart than this many times the usual way belong to the body or to another limb.
 const MOST_APART: f64 = 1.6;
@@ -134,7 +138,8 @@ fn between_walls(samples: &mut [Sample], directions: &[DVec3], picking: &Picking
 }
 
 /// The vertices near a curve inside a limb of this half thickness that are connected with the `seen` ones, on the model's
-/// surface after these displacements.
+/// surface after these displacements. Behind its first point, where the body begins, there are none: they would turn with
+/// the first bone.
 pub(super) fn around(
     curve: &Curve,
     half: f64,
@@ -143,29 +148,146 @@ pub(super) fn around(
     displacements: &[DVec3],
 ) -> Vec<SurfaceVertex> {
     const SPANS: usize = 32;
-    let limit = GIRTH * half;
     let at = |span: usize| curve.position(curve.length() * span as f64 / SPANS as f64);
+    let shown = Shown { model, displacements };
     let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
-    let is_near = |vertex: SurfaceVertex| {
-        let point = model.surface.positions[vertex.index()] + displacements[vertex.index()];
-        line.windows(2).any(|ends| distance_to(point, ends) <= limit)
+    let outwards = line[1] - line[0];
+    // From the line to a vertex near it.
+    let way = |vertex: SurfaceVertex| {
+        let point = shown.position(vertex);
+        let is_behind = (point - line[0]).dot(outwards) < 0.0;
+        let ahead = if is_behind { &line[SPANS / 4..] } else { &line[..] };
+        let ways = ahead.windows(2).map(|ends| way_to(point, ends));
+        let shortest = ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
+        (shortest.length() <= GIRTH * half).then_some(shortest)
     };
-    let mut is_seen = vec![false; model.surface.positions.len()];
-    let mut found: Vec<SurfaceVertex> = Vec::new();
-    let mut stack: Vec<SurfaceVertex> = seen.to_vec();
-    while let Some(vertex) = stack.pop() {
-        if !std::mem::replace(&mut is_seen[vertex.index()], true) && is_near(vertex) {
-            found.push(vertex);
-            stack.extend(model.topology.neighbours(vertex));
+    let side = |vertex: SurfaceVertex| {
+        let way = way(vertex)?.normalize_or_zero();
+        Some(way.dot(shown.normal(vertex).normalize_or_zero()))
+    };
+    // The person sees the outside, whichever way the triangles are turned.
+    let outside = seen
+        .iter()
+        .filter_map(|vertex| side(*vertex))
+        .map(f64::signum)
+        .sum::<f64>();
+    let is_of_limb = |vertex: SurfaceVertex| side(vertex).is_some_and(|side| side * outside.signum() >= LEAST_FACING);
+    let topology = &model.topology;
+    let mut is_passed = vec![false; model.surface.positions.len()];
+    let mut found = flood(seen.to_vec(), &mut is_passed, topology, is_of_limb);
+    // What turns to the line is another limb, unless it is only a fold of this one.
+    let mut is_fold_passed = vec![false; model.surface.positions.len()];
+    found.iter().for_each(|vertex| is_fold_passed[vertex.index()] = true);
+    let rim = found.iter().flat_map(|vertex| topology.neighbours(*vertex));
+    let rim: Vec<SurfaceVertex> = rim.copied().filter(|vertex| !is_fold_passed[vertex.index()]).collect();
+    for start in rim {
+        let fold = flood(vec![start], &mut is_fold_passed, topology, |vertex| {
+            way(vertex).is_some()
+        });
+        let is_open = |vertex: &SurfaceVertex| topology.neighbours(*vertex).iter().any(|beside| way(*beside).is_none());
+        if !fold.iter().any(is_open) {
+            found.extend(fold);
         }
     }
     found.sort_unstable();
     found
 }
 
-/// The distance of a point from a segment.
-fn distance_to(point: DVec3, ends: &[DVec3]) -> f64 {
+/// The vertices that are connected with these through vertices that belong, and were not passed before.
+fn flood(
+    mut front: Vec<SurfaceVertex>,
+    is_passed: &mut [bool],
+    topology: &Topology,
+    belongs: impl Fn(SurfaceVertex) -> bool,
+) -> Vec<SurfaceVertex> {
+    let mut found = Vec::new();
+    while let Some(vertex) = front.pop() {
+        if !std::mem::replace(&mut is_passed[vertex.index()], true) && belongs(vertex) {
+            found.push(vertex);
+            front.extend(topology.neighbours(vertex));
+        }
+    }
+    found
+}
+
+/// A surface after its displacements.
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    model: &'a Model,
+    displacements: &'a [DVec3],
+}
+
+impl Shown<'_> {
+    fn position(&self, vertex: SurfaceVertex) -> DVec3 {
+        self.model.surface.positions[vertex.index()] + self.displacements[vertex.index()]
+    }
+
+    /// The normal at a vertex, of any length.
+    fn normal(&self, vertex: SurfaceVertex) -> DVec3 {
+        let triangles = &self.model.surface.triangles;
+        let faces = self.model.topology.faces(vertex, triangles);
+        let normals = faces.map(|face| {
+            let [a, b, c] = triangles[face as usize].map(|corner| self.position(corner));
+            (b - a).cross(c - a)
+        });
+        normals.sum()
+    }
+}
+
+/// The shortest way to a point from a segment.
+fn way_to(point: DVec3, ends: &[DVec3]) -> DVec3 {
     let (from, along) = (ends[0], ends[1] - ends[0]);
     let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-    point.distance(from + along * share.clamp(0.0, 1.0))
+    point - (from + along * share.clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests {
+    use std::f64::consts::PI;
+
+    use glam::DVec3;
+    use pliant_mesh::{Curve, Model, SurfaceVertex, shapes};
+
+    use super::around;
+
+    const LEG: f64 = 8.0;
+
+    /// Half the distance between the middles of both legs, which are 1 thick from the middle.
+    const APART: f64 = 1.25;
+
+    /// Two legs that hang down from a bend at y = 0, one at negative x and one at positive x: a tube of radius 1.
+    fn legs() -> Model {
+        let mut tube = shapes::tube(40, 140, 2.0 * LEG + PI * APART);
+        for p in &mut tube.positions {
+            let bend = (p.z - LEG).clamp(0.0, PI * APART) / APART;
+            let below = (LEG - p.z).max(p.z - LEG - PI * APART).max(0.0);
+            let out = DVec3::new(-bend.cos(), bend.sin(), 0.0);
+            *p = (APART + p.x) * out + DVec3::new(0.0, -below, p.y);
+        }
+        shapes::model(tube)
+    }
+
+    #[test]
+    fn the_limb_is_closed_round_the_spine_and_leaves_the_limb_beside_it_and_the_body() {
+        let model = legs();
+        let positions = &model.surface.positions;
+        let (from, to) = (DVec3::new(-APART, -1.0, 0.0), DVec3::new(-APART, -6.0, 0.0));
+        let points = (0..5).map(|point| from.lerp(to, f64::from(point) / 4.0)).collect();
+        let curve = Curve::new(points, false).unwrap();
+        let rest = vec![DVec3::ZERO; positions.len()];
+        let all = (0..positions.len() as u32).map(SurfaceVertex);
+        let is_seen = |p: DVec3| p.z > 0.9 && (-6.0..-1.0).contains(&p.y) && p.x < 0.0;
+        let seen: Vec<SurfaceVertex> = all.clone().filter(|v| is_seen(positions[v.index()])).collect();
+        let found = around(&curve, 1.0, &seen, &model, &rest);
+        for vertex in all {
+            let p = positions[vertex.index()];
+            let is_found = found.binary_search(&vertex).is_ok();
+            if p.x < 0.0 && (-5.9..-1.1).contains(&p.y) {
+                assert!(is_found, "the leg at {p}");
+            }
+            assert!(!is_found || p.y <= -1.0, "the body at {p}");
+            assert!(!is_found || p.x < 0.0, "the other leg at {p}");
+        }
+    }
 }
