@@ -6,14 +6,18 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_deform::Role;
-use pliant_mesh::{DistanceSearch, Joint, Shape, SurfaceVertex};
+use pliant_mesh::{Cancelled, DistanceSearch, Joint, Shape, SurfaceVertex};
 
 use crate::document::{Document, Handle, HandleId, Paint};
 use crate::jobs::JobKind;
 use crate::region::{FoundLimb, limb_chain, limb_joint};
 use crate::view::{Pick, View};
 use crate::workspace::{Workspace, members, tint_limb};
+
+/// The most joints above a posed one that are looked at.
+const MOST_ABOVE: i32 = 3;
 
 /// The limb under the pose brush at a point of the surface.
 #[derive(Clone, Debug)]
@@ -98,6 +102,11 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
     };
     let displacements = Arc::clone(workspace.document.from_file());
     let contacts = workspace.computed().contacts.clone();
+    let document = &workspace.document;
+    let posed = match handle_at(document, &pick) {
+        None => document.handles().iter().map(Handle::centre).collect(),
+        Some(_) => Vec::new(),
+    };
     workspace.jobs.look_for_joint(
         pick.triangle,
         is_chain,
@@ -113,13 +122,43 @@ pub(crate) fn hover(workspace: &mut Workspace, view: &View, pointer_px: Option<g
             match is_chain {
                 true => Ok(limb_chain(&model, &shape, &contacts, at, up, cancel)?),
                 false => {
-                    let joint = limb_joint(&model, &shape, &contacts, at, up, cancel)?.map(Arc::new);
+                    let joint_at = |up| limb_joint(&model, &shape, &contacts, at, up, cancel);
+                    let joint = above_posed(joint_at, up, &pick, &posed)?.map(Arc::new);
                     let inner = Vec::new();
                     Ok(joint.map(|joint| FoundLimb { joint, inner }))
                 }
             }
         }),
     );
+}
+
+/// The joint `up`, or, if that is not chosen and is a posed one on whose body's side the pointer is, the next one above
+/// it: pointing at an upper arm beside a bent elbow means the shoulder. `posed` has the places of the posed joints.
+fn above_posed(
+    joint_at: impl Fn(i32) -> Result<Option<Joint>, Cancelled>,
+    up: i32,
+    pick: &Pick,
+    posed: &[DVec3],
+) -> Result<Option<Joint>, Cancelled> {
+    let is_posed = |joint: &Joint| posed.iter().any(|place| is_at(*place, joint));
+    let is_passed = |joint: &Joint| is_posed(joint) && joint.far_side.binary_search(&pick.vertex).is_err();
+    let guess = joint_at(up)?;
+    let Some(first) = guess
+        .as_ref()
+        .filter(|joint| up == 0 && is_passed(joint))
+        .map(|joint| joint.up)
+    else {
+        return Ok(guess);
+    };
+    for above in first + 1..=first + MOST_ABOVE {
+        match joint_at(above)? {
+            Some(joint) if joint.up < above => break,
+            Some(joint) if !is_posed(&joint) => return Ok(Some(joint)),
+            Some(_) => {}
+            None => break,
+        }
+    }
+    Ok(guess)
 }
 
 /// Tints the limb that a press of the pose brush at `pointer_px` would turn; `None` tints none.
@@ -181,7 +220,12 @@ fn is_in_chain(document: &Document, id: HandleId) -> bool {
 
 /// Returns true if a handle's pivot is at a joint.
 fn turns_about(handle: &Handle, joint: &Joint) -> bool {
-    handle.centre().distance(joint.centre) <= joint.falloff.max(joint.radius)
+    is_at(handle.centre(), joint)
+}
+
+/// Returns true if a place is at a joint.
+fn is_at(place: DVec3, joint: &Joint) -> bool {
+    place.distance(joint.centre) <= joint.falloff.max(joint.radius)
 }
 
 /// A limb beyond whose joint there is no handle.

@@ -315,3 +315,35 @@ fn a_limited_joint_bends_within_its_range_on_both_sides_and_later_too() {
         assert_eq!(limited(&rig), 2, "files keep them");
     }
 }
+
+#[test]
+fn an_upper_arm_beside_a_posed_elbow_means_the_shoulder() {
+    let mut rig = open();
+    rig.command(Command::ToggleWholeLimb);
+    let (_, forearm_px) = seen(&rig, DVec3::new(4.2, 0.0, 0.0));
+    drag(&mut rig, forearm_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let elbow = rig.editor.document().handles()[0].clone();
+    assert!(elbow.pivot.distance(DVec3::X * JOINTS[1]) < 0.25, "{}", elbow.pivot);
+    for x in [2.2, 2.6, 2.9] {
+        let (_, arm_px) = seen(&rig, DVec3::new(x, 0.0, 0.0));
+        drag(&mut rig, arm_px, DVec2::new(0.0, 30.0), Modifiers::NONE);
+        let handles = rig.editor.document().handles();
+        let shoulder = handles.iter().find(|handle| handle.pivot.x < 2.0);
+        let shoulder = shoulder.unwrap_or_else(|| panic!("a drag at {x} moves the shoulder"));
+        assert!(
+            shoulder.pivot.distance(DVec3::X * JOINTS[0]) < 0.25,
+            "{x}: {}",
+            shoulder.pivot
+        );
+        assert_eq!(
+            rig.editor.document().handle(elbow.id).unwrap().parent,
+            Some(shoulder.id)
+        );
+        rig.undo();
+        rig.drain();
+    }
+    // The handle itself is taken where the pointer is on it.
+    let (_, forearm_px) = seen(&rig, elbow.affine().transform_point3(DVec3::new(4.2, 0.0, 0.0)));
+    drag(&mut rig, forearm_px, DVec2::new(0.0, 40.0), Modifiers::NONE);
+    assert_eq!(rig.editor.document().handles().len(), 1);
+}
