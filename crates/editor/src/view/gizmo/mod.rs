@@ -168,6 +168,35 @@ mod tests {
     }
 
     #[test]
+    fn seen_along_an_axis_nothing_lies_around_the_middle_that_turns_or_moves_in_depth() {
+        for (yaw_rad, pitch_rad) in [(0.0, 0.0), (0.1, -0.1), (1.57, 0.05), (0.0, 1.5)] {
+            let camera = Camera {
+                yaw_rad,
+                pitch_rad,
+                ..camera(4.0)
+            };
+            let centre = camera.target;
+            let shapes = gizmo_shapes(GizmoMode::All, centre, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
+            let middle_px = camera.project(centre, VIEWPORT_PX).unwrap();
+            let sight = camera.forward();
+            for step in 0..48 {
+                let angle_rad = f64::from(step) * std::f64::consts::TAU / 48.0;
+                for distance_px in [10.0, 18.0, 26.0] {
+                    let at_px = middle_px + DVec2::from_angle(angle_rad) * distance_px;
+                    let case = format!("{yaw_rad} {pitch_rad}: {at_px}");
+                    match hit_gizmo(&shapes, at_px, &camera, VIEWPORT_PX) {
+                        Some(GizmoPart::Ring(axis)) => panic!("{case}: the ring {axis}"),
+                        Some(GizmoPart::Arrow(axis) | GizmoPart::Box(axis)) => {
+                            assert!(DVec3::AXES[axis].dot(sight).abs() < 0.98, "{case}: the axis {axis}");
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn every_part_is_grabbed_where_it_is_drawn() {
         let camera = camera(4.0);
         for mode in [GizmoMode::Move, GizmoMode::Turn, GizmoMode::Scale] {

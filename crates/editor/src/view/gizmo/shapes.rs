@@ -20,6 +20,17 @@ const CENTRE_PX: f64 = 7.0;
 const RING_SEGMENTS: usize = 64;
 const HEAD_SEGMENTS: usize = 12;
 
+/// With all parts shown, rings begin this far from the middle of the screen's gizmo: a ring that is seen from the side
+/// would lie across the painted surface there, and a drag of that surface would turn it.
+const RING_FROM_PX: f64 = 36.0;
+
+/// An axis is left out if the cosine between it and the direction of sight is above this: it would be a point under which
+/// a drag moves or scales in depth.
+const MOST_ALONG_SIGHT: f64 = 0.97;
+
+/// A square is left out if the cosine between its normal and the direction of sight is below this.
+const LEAST_SEEN: f64 = 0.08;
+
 const AXIS_COLOURS: [[u8; 3]; 3] = [[226, 62, 72], [106, 176, 48], [58, 122, 228]];
 const AXIS_BRIGHT: [[u8; 3]; 3] = [[255, 136, 140], [172, 236, 112], [140, 188, 255]];
 
@@ -51,16 +62,18 @@ pub fn gizmo_shapes(
     let shows = |wanted: GizmoMode| mode == GizmoMode::All || mode == wanted;
     if shows(GizmoMode::Turn) {
         for axis in 0..3 {
-            add(
-                GizmoPart::Ring(axis),
-                ring(centre, axes.basis * axis_vector(axis), RING_PX * px, to_eye),
-                Vec::new(),
-            );
+            let mut lines = ring(centre, axes.basis * axis_vector(axis), RING_PX * px, to_eye);
+            if mode == GizmoMode::All {
+                let is_clear = |end: &DVec3| (*end - centre).reject_from(to_eye).length() >= RING_FROM_PX * px;
+                lines.retain(|ends| ends.iter().all(is_clear));
+            }
+            add(GizmoPart::Ring(axis), lines, Vec::new());
         }
     }
+    let along_sight = |direction: DVec3| direction.dot(to_eye).abs();
     for axis in 0..3 {
-        if shows(GizmoMode::Move) {
-            let direction = axes.basis * axis_vector(axis);
+        let direction = axes.basis * axis_vector(axis);
+        if shows(GizmoMode::Move) && along_sight(direction) <= MOST_ALONG_SIGHT {
             let tip = centre + direction * (ARROW_PX * px);
             let base = centre + direction * ((ARROW_PX - ARROW_HEAD_PX) * px);
             let start = centre + direction * (2.0 * CENTRE_PX * px);
@@ -69,6 +82,8 @@ pub fn gizmo_shapes(
                 vec![[start, base]],
                 cone(base, tip, ARROW_WIDTH_PX * px),
             );
+        }
+        if shows(GizmoMode::Move) && along_sight(direction) >= LEAST_SEEN {
             let (u, v) = (
                 axes.basis * axis_vector((axis + 1) % 3),
                 axes.basis * axis_vector((axis + 2) % 3),
@@ -76,8 +91,8 @@ pub fn gizmo_shapes(
             let ends = [SQUARE_FROM_PX * px, SQUARE_TO_PX * px];
             add(GizmoPart::Square(axis), Vec::new(), square(centre, u, v, ends));
         }
-        if shows(GizmoMode::Scale) {
-            let direction = axes.own * axis_vector(axis);
+        let direction = axes.own * axis_vector(axis);
+        if shows(GizmoMode::Scale) && along_sight(direction) <= MOST_ALONG_SIGHT {
             let middle = centre + direction * (BOX_PX * px);
             let start = if mode == GizmoMode::Scale {
                 2.0 * CENTRE_PX
