@@ -12,7 +12,9 @@ use crate::cut::CutStroke;
 use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
+use crate::revision::Revision;
 use crate::stitching::MergeSettings;
+use crate::timeline::BodyMotion;
 use crate::tool::{
     BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -23,7 +25,7 @@ use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Lo
 pub struct SceneView<'a> {
     /// The open file's vertex sets; `None` before the first file.
     pub model: Option<&'a Arc<Model>>,
-    /// The camera, which gives the matrices.
+    /// The camera, which gives the matrices. It is in the space of the shown frame, as everything that is shown.
     pub camera: &'a Camera,
     /// The view's size in points.
     pub viewport_px: DVec2,
@@ -103,6 +105,15 @@ pub struct SceneView<'a> {
     /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
     /// awaited.
     pub wanted_frame: Option<usize>,
+    /// The number of the search for which all frames of a sequence must be read and followed
+    /// ([`Event::Followed`](crate::Event::Followed)); `None` if none is awaited.
+    pub wanted_following: Option<Revision>,
+    /// The frame of the body's path under the pointer.
+    pub pointed_frame: Option<usize>,
+    /// The camera in the world, to which the body's path may have carried the shown frame.
+    pub world_camera: &'a Camera,
+    /// The motion of the shown frame along the path, into the world.
+    pub body_motion: BodyMotion,
     /// True while the flow plays.
     pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.

@@ -176,6 +176,13 @@ commands! {
     ToggleSkins = animation::TOGGLE_SKINS;
     /// Chooses these ghosts.
     SetSkins(skins: Skins) = animation::SET_SKINS;
+    /// Shows or hides the path of a sequence's body.
+    TogglePath = animation::TOGGLE_PATH;
+    /// Moves a sequence's body at a frame, by a way in world units. The first such frame brings both ends of the sequence,
+    /// at which the body stays.
+    BendPath(frame: usize, shift: DVec3) = animation::BEND_PATH;
+    /// No longer moves a sequence's body at a frame.
+    FreePath(frame: usize) = animation::FREE_PATH;
     /// Sets a key of every handle at the shown moment.
     KeyHere = animation::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.

@@ -1,8 +1,13 @@
 //! The animation of a sequence: its keys are at frames, of which one is shown.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::animation::Animation;
+use super::body_path::BodyPath;
+use crate::ground_axis::GroundAxis;
 
 impl Animation {
     /// The same keys for the frames of a sequence, of which one is shown.
@@ -12,6 +17,10 @@ impl Animation {
             ..self.clone()
         };
         animation.tidy_spans();
+        animation.path = animation
+            .path
+            .and_then(|path| path.only(|frame| frame < count))
+            .map(Arc::new);
         animation.at_frame(self.frame_at(self.time).round() as usize)
     }
 
@@ -45,5 +54,38 @@ impl Animation {
             }
         }
         animation
+    }
+
+    /// The bent path of the sequence's body; `None` if it is the body's own.
+    pub fn path(&self) -> Option<&Arc<BodyPath>> {
+        self.path.as_ref()
+    }
+
+    /// The same animation with another path.
+    pub(crate) fn with_path(&self, path: Option<BodyPath>) -> Self {
+        Self {
+            path: path.map(Arc::new),
+            ..self.clone()
+        }
+    }
+
+    /// Moves the body at a frame of the sequence. The first such frame brings both ends of the sequence, at which the body
+    /// stays.
+    pub(crate) fn bend_path(&self, frame: usize, shift: DVec3, up: GroundAxis) -> Self {
+        let path = match self.path() {
+            Some(path) => Some(path.with(frame, shift)),
+            None => {
+                let last = self.frames.map_or(0, |count| count - 1);
+                let mut shifts = BTreeMap::from([0, last].map(|end| (end, DVec3::ZERO)));
+                shifts.insert(frame, shift);
+                BodyPath::of(shifts, up)
+            }
+        };
+        self.with_path(path)
+    }
+
+    /// No longer moves the body at a frame. With fewer than two such frames the path is the body's own.
+    pub(crate) fn free_path(&self, frame: usize) -> Self {
+        self.with_path(self.path().and_then(|path| path.only(|own| own != frame)))
     }
 }

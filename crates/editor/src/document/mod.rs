@@ -2,6 +2,7 @@
 
 mod access;
 mod animation;
+mod body_path;
 mod carried_examples;
 mod content;
 mod continuation;
@@ -39,6 +40,7 @@ mod vertex_access;
 
 pub use access::{Access, ObjectAction, SmallParts, object_name};
 pub use animation::{Animation, KeyFrame, KeyId};
+pub use body_path::BodyPath;
 pub use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
 pub use crease::{Crease, SHARPEN_RANGE};

@@ -79,6 +79,10 @@ impl Editor {
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             wanted_frame: workspace.frame_to_read(),
+            wanted_following: workspace.frames_to_follow(&view.look),
+            pointed_frame: self.overlay.pointed_frame,
+            world_camera: view.world_camera(),
+            body_motion: view.body(),
             is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,
@@ -93,7 +97,7 @@ impl Editor {
             handles: document.handles(),
             selected: workspace.selection.selected(),
             companions: workspace.selection.companions(),
-            status: status(gesture, workspace, view, settings, self.overlay.rim.as_ref()),
+            status: status(gesture, workspace, view, settings, &self.overlay),
             problem: workspace.refusal.as_deref(),
             jobs: workspace.jobs.running(),
             counts: workspace.computed().region.counts,
@@ -156,7 +160,7 @@ impl Editor {
     fn cursor(&self) -> Cursor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
-            None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.overlay.takes_press() => Cursor::Grab,
             None if self.overlay.takes_handle => Cursor::Grab,
             None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,

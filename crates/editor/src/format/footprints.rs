@@ -1,9 +1,9 @@
 //! Footprints of an edit: parts that rest on the ground for some frames.
 
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
+use crate::ground_axis::GroundAxis;
 
 /// A handle that is held wherever it rests on the ground.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -22,27 +22,6 @@ pub struct FootprintEntry {
     /// The number of frames before and after a footprint over which the handle goes over to its own way.
     #[serde(default = "usual_fade")]
     pub fade: u32,
-}
-
-/// An axis that points up.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase", expecting = "\"y\" or \"z\"")]
-pub enum GroundAxis {
-    /// As in glTF and in most scans.
-    #[default]
-    Y,
-    /// As in Blender.
-    Z,
-}
-
-impl GroundAxis {
-    /// Its direction, of length 1.
-    pub(super) fn direction(self) -> DVec3 {
-        match self {
-            Self::Y => DVec3::Y,
-            Self::Z => DVec3::Z,
-        }
-    }
 }
 
 fn usual_fade() -> u32 {

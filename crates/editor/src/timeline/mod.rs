@@ -1,6 +1,7 @@
 //! Handles' motions over time: keys, and the transforms between them.
 
 mod filter;
+mod followed;
 mod frame_pose;
 mod interpolation;
 mod motion;
@@ -14,6 +15,7 @@ mod spline;
 mod track;
 
 pub(crate) use self::filter::quick_motions;
+pub use self::followed::{FollowedFrame, middle_of};
 pub(crate) use self::frame_pose::{frames_that_reach, transform_at};
 pub use self::motion::Timeline;
 pub(crate) use self::motion::values_of;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::body_way::BodyWay;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -21,6 +22,8 @@ pub(crate) struct FrameWork {
     pub(super) places: BTreeMap<usize, BTreeMap<HandleId, HandlePlace>>,
     /// The paint to which these belong.
     pub(super) places_of: Option<Version>,
+    /// The way of the body through all frames.
+    pub(super) way: BodyWay,
 }
 
 impl FrameWork {

@@ -1,5 +1,6 @@
 //! A person's work, the actions on it, and their consequences.
 
+mod body_way;
 mod colour_revisions;
 mod colours;
 mod consequences;
@@ -24,6 +25,7 @@ mod mirror_request;
 mod objects;
 mod options;
 mod painting;
+mod path;
 mod poses;
 mod regions;
 mod selection;
@@ -66,6 +68,7 @@ pub(crate) use options::{
     apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength, set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
+pub(crate) use path::{BEND_PATH, bend_path, free_path, put_path};
 pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;

@@ -8,6 +8,7 @@ use super::place::{StoredPlace, places, stored_places};
 use crate::document::{Animation, HandleCurve, HandleId, KeyFrame};
 use crate::ease::Ease;
 use crate::format::edit_error::EditError;
+use crate::format::path::PathEntry;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,6 +20,9 @@ pub(super) struct StoredAnimation {
     time: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     keys: Vec<StoredKey>,
+    /// The bent path of the body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    path: Option<PathEntry>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -63,13 +67,14 @@ impl StoredAnimation {
             fps: animation.fps(),
             time: animation.time(),
             keys: animation.keys().iter().map(key).collect(),
+            path: animation.path().map(|path| PathEntry::of(path)),
         })
     }
 
     /// The same, read.
     ///
     /// # Errors
-    /// A time or a number of frames a second outside its range.
+    /// A time or a number of frames a second outside its range; a path that an edit can't have.
     pub(super) fn animation(&self) -> Result<Animation, EditError> {
         let refuse = |place: String, found: f64, allowed: String| {
             Err(EditError::OutOfRange {
@@ -106,6 +111,10 @@ impl StoredAnimation {
                 .collect(),
             weights: key.weights.clone(),
         };
-        Ok(Animation::of(self.keys.iter().map(key), self.time, self.fps))
+        if let Some(path) = &self.path {
+            path.check_of_document().map_err(|error| error.under("animation"))?;
+        }
+        let animation = Animation::of(self.keys.iter().map(key), self.time, self.fps);
+        Ok(animation.with_path(self.path.as_ref().and_then(PathEntry::path)))
     }
 }

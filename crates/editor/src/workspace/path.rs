@@ -1,0 +1,94 @@
+//! Actions on the bent path of a sequence's body.
+
+use glam::DVec3;
+
+use super::body_way::BodyWay;
+use super::state::Workspace;
+use crate::ground_axis::GroundAxis;
+use crate::revision::Revision;
+use crate::timeline::{BodyMotion, FollowedFrame};
+use crate::view::{Look, UpAxis};
+
+/// The name of the steps that move the path.
+pub(crate) const BEND_PATH: &str = "Bend path";
+
+/// Moves the body at a frame, by a way in world units, in one step.
+pub(crate) fn bend_path(workspace: &mut Workspace, frame: usize, shift: DVec3, up: UpAxis) {
+    workspace.step(BEND_PATH, |workspace| put_path(workspace, frame, shift, up));
+}
+
+/// Moves the body at a frame, by a way in world units, in the present step.
+pub(crate) fn put_path(workspace: &mut Workspace, frame: usize, shift: DVec3, up: UpAxis) {
+    let animation = workspace.document.animation();
+    let animation = animation.bend_path(frame, shift, ground_axis(up));
+    workspace.document.set_animation(animation);
+}
+
+/// No longer moves the body at a frame.
+pub(crate) fn free_path(workspace: &mut Workspace, frame: usize) {
+    workspace.step("Remove path point", |workspace| {
+        let animation = workspace.document.animation().free_path(frame);
+        workspace.document.set_animation(animation);
+    });
+}
+
+fn ground_axis(up: UpAxis) -> GroundAxis {
+    match up {
+        UpAxis::Y => GroundAxis::Y,
+        UpAxis::Z => GroundAxis::Z,
+    }
+}
+
+impl Workspace {
+    /// The way of the open sequence's body.
+    pub(crate) fn body_way(&self) -> &BodyWay {
+        &self.frames.way
+    }
+
+    /// The upright direction of the path, or of a new one if `up` points up in the view.
+    pub(crate) fn path_up(&self, up: UpAxis) -> DVec3 {
+        let path = self.document.animation().path();
+        path.map_or(ground_axis(up), |path| path.up()).direction()
+    }
+
+    /// The motion of the body in the shown frame; `None` until it is known.
+    pub(crate) fn body_motion(&self) -> Option<BodyMotion> {
+        let animation = self.document.animation();
+        match animation.path() {
+            Some(_) if animation.frames().is_some() => self.frames.way.motion(animation.frame()),
+            _ => Some(BodyMotion::STILL),
+        }
+    }
+
+    /// The number of the search that all frames must be read for; `None` if none is needed.
+    pub(crate) fn frames_to_follow(&self, look: &Look) -> Option<Revision> {
+        let animation = self.document.animation();
+        let is_needed = (look.timeline && look.path) || animation.path().is_some();
+        let is_wanted = animation.frames().is_some() && is_needed && self.frames.way.is_unknown();
+        is_wanted.then_some(Revision(1))
+    }
+
+    /// Takes all frames that were read, or the reason why they can't be.
+    pub(crate) fn take_followed(&mut self, frames: Result<Vec<FollowedFrame>, String>) {
+        match (frames, self.model().cloned()) {
+            (Ok(frames), Some(model)) if Some(frames.len()) == self.document.animation().frames() => {
+                self.frames.way.take(&frames, &model);
+            }
+            (Ok(_), _) => {}
+            (Err(sentence), _) => {
+                self.frames.way.fail();
+                self.refuse(sentence);
+            }
+        }
+    }
+
+    /// Shows the way again, and reads the frames again if they could not be read.
+    pub(crate) fn try_to_follow_again(&mut self) {
+        self.frames.way.try_again();
+    }
+
+    /// Computes the body's motions by the document's present path.
+    pub(crate) fn follow_path(&mut self) {
+        self.frames.way.follow(self.document.animation().path());
+    }
+}
