@@ -89,7 +89,7 @@ pub enum Event {
     /// A frame of the sequence was read: the displacements of its surface vertices from the file's shape, or the reason
     /// why it can't be shown, in one sentence.
     Frame(usize, Result<Arc<Vec<DVec3>>, String>),
-    /// All frames of the sequence were followed, as [`SceneView::wanted_following`](crate::SceneView::wanted_following)
+    /// All frames of the sequence were followed, as [`SceneView::wants_following`](crate::SceneView::wants_following)
     /// asks, or the reason why they can't be, in one sentence.
     Followed(Result<Vec<FollowedFrame>, String>),
     /// A change of the mesh ([`Editor::take_stitch`](crate::Editor::take_stitch)) has ended: the new mesh, or the reason

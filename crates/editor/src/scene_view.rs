@@ -12,7 +12,6 @@ use crate::cut::CutStroke;
 use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
-use crate::revision::Revision;
 use crate::stitching::MergeSettings;
 use crate::timeline::BodyMotion;
 use crate::tool::{
@@ -105,9 +104,8 @@ pub struct SceneView<'a> {
     /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
     /// awaited.
     pub wanted_frame: Option<usize>,
-    /// The number of the search for which all frames of a sequence must be read and followed
-    /// ([`Event::Followed`](crate::Event::Followed)); `None` if none is awaited.
-    pub wanted_following: Option<Revision>,
+    /// True if all frames of a sequence must be read and followed ([`Event::Followed`](crate::Event::Followed)).
+    pub wants_following: bool,
     /// The frame of the body's path under the pointer.
     pub pointed_frame: Option<usize>,
     /// The camera in the world, to which the body's path may have carried the shown frame.

@@ -79,7 +79,7 @@ impl Editor {
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             wanted_frame: workspace.frame_to_read(),
-            wanted_following: workspace.frames_to_follow(&view.look),
+            wants_following: workspace.wants_following(&view.look),
             pointed_frame: self.overlay.pointed_frame,
             world_camera: view.world_camera(),
             body_motion: view.body(),

@@ -5,7 +5,6 @@ use glam::DVec3;
 use super::body_way::BodyWay;
 use super::state::Workspace;
 use crate::ground_axis::GroundAxis;
-use crate::revision::Revision;
 use crate::timeline::{BodyMotion, FollowedFrame};
 use crate::view::{Look, UpAxis};
 
@@ -60,12 +59,11 @@ impl Workspace {
         }
     }
 
-    /// The number of the search that all frames must be read for; `None` if none is needed.
-    pub(crate) fn frames_to_follow(&self, look: &Look) -> Option<Revision> {
+    /// Returns true if all frames must be read: the path is shown or bent, and the body's way is not known.
+    pub(crate) fn wants_following(&self, look: &Look) -> bool {
         let animation = self.document.animation();
         let is_needed = (look.timeline && look.path) || animation.path().is_some();
-        let is_wanted = animation.frames().is_some() && is_needed && self.frames.way.is_unknown();
-        is_wanted.then_some(Revision(1))
+        animation.frames().is_some() && is_needed && self.frames.way.is_unknown()
     }
 
     /// Takes all frames that were read, or the reason why they can't be.

@@ -3,6 +3,7 @@
 
 mod animation;
 mod appended_parts;
+mod body_paths;
 mod carried;
 mod comparison;
 mod controls;

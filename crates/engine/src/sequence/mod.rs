@@ -16,6 +16,7 @@ mod morphs;
 mod open;
 mod report;
 mod run;
+mod side_by_side;
 mod source;
 
 use std::collections::BTreeSet;
@@ -91,7 +92,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let ways = Handles {
         vertices: &handles,
         footprints: &footprints,
-        path: edit.handle_of_path().map_err(in_edit)?,
+        path: edit.part_of_path().map_err(in_edit)?,
         led: &led,
     };
     let sources = (&source, other.as_ref());

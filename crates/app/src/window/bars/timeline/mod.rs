@@ -1,5 +1,6 @@
 //! The timeline under the view: play and the shown moment, a ruler, and the keys of the handles in rows.
 
+mod path_row;
 mod rows;
 mod ruler;
 mod scale;
