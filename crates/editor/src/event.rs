@@ -14,7 +14,7 @@ use crate::document::{SaveMark, SavedAs};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
 use crate::stitching::NewMesh;
-use crate::timeline::FollowedFrame;
+use crate::timeline::{FollowedFrame, Following};
 
 /// An event. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -90,8 +90,8 @@ pub enum Event {
     /// why it can't be shown, in one sentence.
     Frame(usize, Result<Arc<Vec<DVec3>>, String>),
     /// All frames of the sequence were followed, as [`SceneView::wants_following`](crate::SceneView::wants_following)
-    /// asks, or the reason why they can't be, in one sentence.
-    Followed(Result<Vec<FollowedFrame>, String>),
+    /// asks, with the handles of [`Editor::following`](crate::Editor::following), or the reason why they can't be, in one sentence.
+    Followed(Following, Result<Vec<FollowedFrame>, String>),
     /// A change of the mesh ([`Editor::take_stitch`](crate::Editor::take_stitch)) has ended: the new mesh, or the reason
     /// why there is none, in one sentence.
     Stitched(Result<Box<NewMesh>, String>),

@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, ctrl, item, unless};
-use crate::document::{Animation, KeyId};
+use crate::document::{Animation, HandleFilter, HandleId, KeyId};
 use crate::ease::Ease;
 use crate::view::Skins;
 use crate::workspace::{
     bend_path, copy_keys, delete_keys, free_path, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys,
-    set_fps, set_key_ease, set_span, step_frames, stretch_keys,
+    set_filter, set_fps, set_key_ease, set_span, step_frames, stretch_keys,
 };
 
 /// Shows or hides the timeline.
@@ -100,6 +100,21 @@ pub(super) const FREE_PATH: Entry<usize> = Entry {
         no_sequence(state).or(unless(has_point, "The path is not moved at this frame."))
     },
     action: Action::Do(|context, frame| free_path(context.workspace, frame)),
+};
+
+/// Filters a handle's way through a sequence, or no longer.
+pub(super) const SET_FILTER: Entry<(HandleId, Option<HandleFilter>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, filter)| {
+        let count = state.workspace.document.animation().frames().unwrap_or_default();
+        let is_usable = filter.is_none_or(|filter| filter.is_usable(count));
+        no_sequence(state).or_else(|| state.gone(*id)).or(unless(
+            is_usable,
+            "A filter has frames of the sequence, a width of .1 to 1000 and an amount of 0 to 10.",
+        ))
+    },
+    action: Action::Do(|context, (id, filter)| set_filter(context.workspace, id, filter)),
 };
 
 /// Sets a key of every handle.
@@ -401,7 +416,7 @@ fn no_keys(state: &State<'_>) -> Option<Reason> {
 /// The reason if no sequence is open.
 fn no_sequence(state: &State<'_>) -> Option<Reason> {
     let is_sequence = state.workspace.document.animation().frames().is_some();
-    let none = "A single shape has no path: open a sequence.";
+    let none = "A single shape has no way through frames: open a sequence.";
     outside_work_pose(state).or(unless(is_sequence, none))
 }
 

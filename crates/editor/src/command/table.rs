@@ -14,7 +14,8 @@ use super::{
 };
 use crate::cut::KeptSide;
 use crate::document::{
-    FlowOptions, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
+    FlowOptions, HandleFilter, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts,
+    Tips,
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
@@ -183,6 +184,8 @@ commands! {
     BendPath(frame: usize, shift: DVec3) = animation::BEND_PATH;
     /// No longer moves a sequence's body at a frame.
     FreePath(frame: usize) = animation::FREE_PATH;
+    /// Filters a handle's way through a sequence, or no longer.
+    SetFilter(handle: HandleId, filter: Option<HandleFilter>) = animation::SET_FILTER;
     /// Sets a key of every handle at the shown moment.
     KeyHere = animation::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::body_path::BodyPath;
 use super::handle::{Handle, HandleId};
 use super::handle_curve::HandleCurve;
+use super::handle_filter::HandleFilter;
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -28,6 +29,8 @@ pub struct Animation {
     pub(super) frames: Option<usize>,
     /// The bent path of a sequence's body; `None` if it is the body's own.
     pub(super) path: Option<Arc<BodyPath>>,
+    /// The filters of handles' ways through a sequence.
+    pub(super) filters: Arc<BTreeMap<HandleId, HandleFilter>>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -89,6 +92,7 @@ impl Default for Animation {
             fps: FPS,
             frames: None,
             path: None,
+            filters: Arc::default(),
         }
     }
 }
@@ -108,6 +112,7 @@ impl Animation {
             fps,
             frames: None,
             path: None,
+            filters: Arc::default(),
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation

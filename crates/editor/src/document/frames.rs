@@ -7,6 +7,8 @@ use glam::DVec3;
 
 use super::animation::Animation;
 use super::body_path::BodyPath;
+use super::handle::HandleId;
+use super::handle_filter::HandleFilter;
 use crate::ground_axis::GroundAxis;
 
 impl Animation {
@@ -21,6 +23,10 @@ impl Animation {
             .path
             .and_then(|path| path.only(|frame| frame < count))
             .map(Arc::new);
+        let last = count.max(1) - 1;
+        for filter in Arc::make_mut(&mut animation.filters).values_mut() {
+            filter.span = filter.span.map(|frame| frame.min(last));
+        }
         animation.at_frame(self.frame_at(self.time).round() as usize)
     }
 
@@ -87,5 +93,23 @@ impl Animation {
     /// No longer moves the body at a frame. With fewer than two such frames the path is the body's own.
     pub(crate) fn free_path(&self, frame: usize) -> Self {
         self.with_path(self.path().and_then(|path| path.only(|own| own != frame)))
+    }
+
+    /// The filters of handles' ways.
+    pub fn filters(&self) -> &Arc<BTreeMap<HandleId, HandleFilter>> {
+        &self.filters
+    }
+
+    /// The same animation with another filter of a handle's way, or without one.
+    pub(crate) fn with_filter(&self, handle: HandleId, filter: Option<HandleFilter>) -> Self {
+        let mut filters = (*self.filters).clone();
+        match filter {
+            Some(filter) => filters.insert(handle, filter),
+            None => filters.remove(&handle),
+        };
+        Self {
+            filters: Arc::new(filters),
+            ..self.clone()
+        }
     }
 }

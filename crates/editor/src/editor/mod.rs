@@ -149,7 +149,7 @@ impl Editor {
                 self.view.look.timeline = true;
             }
             Event::Frame(frame, shape) => self.workspace.take_frame(frame, shape),
-            Event::Followed(frames) => self.workspace.take_followed(frames),
+            Event::Followed(following, frames) => self.workspace.take_followed(&following, frames),
             Event::Stitched(result) => {
                 self.abort_gesture();
                 take_stitched(&mut self.workspace, result.map(|new| *new));

@@ -18,6 +18,7 @@ use crate::scene_view::{ControlPoints, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::stitching::StitchRequest;
+use crate::timeline::Following;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
 use crate::warning::in_window_words;
@@ -79,7 +80,7 @@ impl Editor {
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             wanted_frame: workspace.frame_to_read(),
-            wants_following: workspace.wants_following(&view.look),
+            wants_following: gesture.is_none() && workspace.wants_following(&view.look),
             pointed_frame: self.overlay.pointed_frame,
             world_camera: view.world_camera(),
             body_motion: view.body(),
@@ -119,6 +120,11 @@ impl Editor {
             change,
             snapshot: self.snapshot()?,
         })
+    }
+
+    /// The handles to follow while all frames of a sequence are read.
+    pub fn following(&self) -> Following {
+        self.workspace.following()
     }
 
     fn control_points(&self) -> Option<ControlPoints> {

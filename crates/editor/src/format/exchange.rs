@@ -139,7 +139,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         }),
         strength,
         keys: document_keys::entries(document, &region.handles),
-        filter: Vec::new(),
+        filter: document_keys::filters(document, &region.handles),
         footprints: Vec::new(),
         path: document.animation().path().map(|path| PathEntry::of(path)),
         mix: None,

@@ -51,7 +51,7 @@ pub use examples::{ExampleEntry, ExampleSource};
 pub use exchange::ExportError;
 pub(crate) use exchange::export;
 pub use field::FieldEntry;
-pub use filters::{FilterEntry, FilterKind};
+pub use filters::FilterEntry;
 pub use flow_file::{Accuracy, DyeEntry, FlowFile, FlowMotion, VelocityEntry};
 pub use footprints::FootprintEntry;
 pub use joins::{JoinsFile, Placement};

@@ -1,17 +1,25 @@
-//! A body followed through the frames of a sequence.
+//! A body and its handles followed through the frames of a sequence.
 
 use glam::DVec3;
+use pliant_mesh::SurfaceVertex;
+
+use super::span::HandlePlace;
+use crate::document::{HandleId, Version};
+
+/// The handles to follow through all frames of a sequence, beside the whole body.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Following {
+    /// The vertices of each, of which there is one at least.
+    pub handles: Vec<(HandleId, Vec<SurfaceVertex>)>,
+    /// The paint that makes these handles.
+    pub(crate) paint: Version,
+}
 
 /// The body in one frame.
 #[derive(Clone, PartialEq, Debug)]
 pub struct FollowedFrame {
     /// The middle of its surface vertices, in world space.
     pub middle: DVec3,
-}
-
-/// The mean of positions, of which there is one at least.
-pub fn middle_of(positions: &[DVec3]) -> DVec3 {
-    let origin = positions.first().copied().unwrap_or_default();
-    let from_origin: DVec3 = positions.iter().map(|position| *position - origin).sum();
-    origin + from_origin / positions.len().max(1) as f64
+    /// The places of the followed handles, in their order.
+    pub places: Vec<HandlePlace>,
 }

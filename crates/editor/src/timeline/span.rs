@@ -11,8 +11,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::RigidMotion;
 use serde::{Deserialize, Serialize};
 
-use super::followed::middle_of;
 use super::interpolation::between;
+use super::middle::middle_of;
 use crate::document::SplitTransform;
 use crate::ease::Ease;
 

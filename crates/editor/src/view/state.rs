@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::camera::{Camera, Orbit, Ray, UpAxis};
+use super::camera::{Camera, NamedView, Orbit, Ray, UpAxis};
 use super::camera_history::{CameraHistory, CameraStep};
 use super::look::Look;
 use crate::timeline::BodyMotion;
@@ -151,6 +151,14 @@ impl View {
             camera.frame(positions, viewport_px);
             camera.distance *= 3.0;
         });
+    }
+
+    /// Looks from a side of the world.
+    pub(crate) fn look_from(&mut self, side: NamedView) {
+        let mut world = self.world;
+        world.look_from(side);
+        let camera = world.carried(&BodyMotion::STILL, &self.body());
+        self.travel(|present| *present = camera);
     }
 
     /// Frames a point.

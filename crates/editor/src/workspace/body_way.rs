@@ -18,24 +18,12 @@ pub(crate) struct BodyWay {
     of: Option<Arc<BodyPath>>,
     /// The lowest coordinates of the file's surface.
     lowest: DVec3,
-    /// True if the frames could not be read.
-    has_failed: bool,
 }
 
 impl BodyWay {
     /// Returns true if all frames must be read before anything is known.
     pub(super) fn is_unknown(&self) -> bool {
-        self.middles.is_none() && !self.has_failed
-    }
-
-    /// Tries again if the frames could not be read.
-    pub(super) fn try_again(&mut self) {
-        self.has_failed = false;
-    }
-
-    /// Notes that the frames could not be read.
-    pub(super) fn fail(&mut self) {
-        self.has_failed = true;
+        self.middles.is_none()
     }
 
     /// Takes all frames that were read.

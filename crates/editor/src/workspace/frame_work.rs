@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::body_way::BodyWay;
+use super::filters::FilterWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -24,6 +25,10 @@ pub(crate) struct FrameWork {
     pub(super) places_of: Option<Version>,
     /// The way of the body through all frames.
     pub(super) way: BodyWay,
+    /// The shifts of handles by filters.
+    pub(super) filters: FilterWork,
+    /// True if not all frames could be read.
+    pub(super) has_failed: bool,
 }
 
 impl FrameWork {

@@ -11,6 +11,7 @@ mod crease_width;
 mod curves;
 mod dirty_colours;
 mod examples;
+mod filters;
 mod flow;
 mod flow_play;
 mod frame_work;
@@ -49,6 +50,7 @@ pub(crate) use curves::{
     divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
 };
 pub(crate) use examples::{add_example, keep_example, remove_example, rename_example, set_example_weight};
+pub(crate) use filters::set_filter;
 pub(crate) use freedom::{aim_free_handles, free_or_hold_selected};
 pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{

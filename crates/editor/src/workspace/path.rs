@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::body_way::BodyWay;
 use super::state::Workspace;
 use crate::ground_axis::GroundAxis;
-use crate::timeline::{BodyMotion, FollowedFrame};
+use crate::timeline::{BodyMotion, FollowedFrame, Following};
 use crate::view::{Look, UpAxis};
 
 /// The name of the steps that move the path.
@@ -59,30 +59,33 @@ impl Workspace {
         }
     }
 
-    /// Returns true if all frames must be read: the path is shown or bent, and the body's way is not known.
+    /// Returns true if all frames must be read: the path is shown or bent, and the body's way is not known, or ways are
+    /// filtered, and those of the handles are not known.
     pub(crate) fn wants_following(&self, look: &Look) -> bool {
         let animation = self.document.animation();
-        let is_needed = (look.timeline && look.path) || animation.path().is_some();
-        animation.frames().is_some() && is_needed && self.frames.way.is_unknown()
+        let has_path = (look.timeline && look.path) || animation.path().is_some();
+        let is_needed = (has_path && self.frames.way.is_unknown()) || self.awaits_handles();
+        animation.frames().is_some() && is_needed && !self.frames.has_failed
     }
 
-    /// Takes all frames that were read, or the reason why they can't be.
-    pub(crate) fn take_followed(&mut self, frames: Result<Vec<FollowedFrame>, String>) {
+    /// Takes all frames that were read, in which these handles were followed, or the reason why they can't be.
+    pub(crate) fn take_followed(&mut self, following: &Following, frames: Result<Vec<FollowedFrame>, String>) {
         match (frames, self.model().cloned()) {
             (Ok(frames), Some(model)) if Some(frames.len()) == self.document.animation().frames() => {
                 self.frames.way.take(&frames, &model);
+                self.frames.filters.take(following, &frames);
             }
             (Ok(_), _) => {}
             (Err(sentence), _) => {
-                self.frames.way.fail();
+                self.frames.has_failed = true;
                 self.refuse(sentence);
             }
         }
     }
 
-    /// Shows the way again, and reads the frames again if they could not be read.
+    /// Reads the frames again if they could not be read.
     pub(crate) fn try_to_follow_again(&mut self) {
-        self.frames.way.try_again();
+        self.frames.has_failed = false;
     }
 
     /// Computes the body's motions by the document's present path.

@@ -22,14 +22,18 @@ fn followed(rig: &Rig) -> Vec<FollowedFrame> {
         middle_of(&shape)
     };
     (0..COUNT)
-        .map(|number| FollowedFrame { middle: middle(number) })
+        .map(|number| FollowedFrame {
+            middle: middle(number),
+            places: Vec::new(),
+        })
         .collect()
 }
 
 fn follow(rig: &mut Rig) {
     assert!(rig.editor.view().wants_following);
     let frames = followed(rig);
-    rig.send(Event::Followed(Ok(frames)));
+    let following = rig.editor.following();
+    rig.send(Event::Followed(following, Ok(frames)));
     assert!(!rig.editor.view().wants_following);
 }
 
@@ -206,7 +210,11 @@ fn frames_that_cannot_be_read_say_so_once() {
     let mut rig = open(shapes::icosphere(1));
     rig.command(Command::TogglePath);
     assert!(rig.editor.view().wants_following);
-    rig.send(Event::Followed(Err("walk-3.obj is gone: put it back".to_owned())));
+    let following = rig.editor.following();
+    rig.send(Event::Followed(
+        following,
+        Err("walk-3.obj is gone: put it back".to_owned()),
+    ));
     assert!(rig.editor.view().problem.unwrap().contains("walk-3.obj"));
     assert!(!rig.editor.view().wants_following);
     rig.command(Command::TogglePath);

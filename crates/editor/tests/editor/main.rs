@@ -13,6 +13,7 @@ mod curve_strokes;
 mod curves;
 mod edit_format;
 mod examples;
+mod filters;
 mod flow;
 mod free_depth;
 mod habits;

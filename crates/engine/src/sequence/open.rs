@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{FollowedFrame, middle_of};
+use pliant_editor::{FollowedFrame, Following, middle_of};
 use pliant_io::Format;
 use pliant_mesh::Drawn;
 
+use super::bend::place;
 use super::cache::Cache;
 use super::folder::Folder;
 use super::morphs::Morphs;
@@ -135,16 +136,22 @@ impl OpenSequence {
         self.note.as_deref()
     }
 
-    /// Follows the body through all frames: reads each, and keeps none.
+    /// Follows the body and some handles through all frames: reads each, and keeps none.
     ///
     /// # Errors
     /// A frame that can't be read, or that has other vertices or faces; [`EngineError::Interrupted`].
-    pub fn followed(&self, watch: &Watch) -> Result<Vec<FollowedFrame>, EngineError> {
+    pub fn followed(&self, following: &Following, watch: &Watch) -> Result<Vec<FollowedFrame>, EngineError> {
         let frames: Vec<usize> = (0..self.count()).collect();
         let of_frame = |frame: usize| {
             let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
-            let middle = middle_of(&positions);
-            Ok(FollowedFrame { middle })
+            let first = &self.mesh.model.surface.positions;
+            let handles = following.handles.iter();
+            Ok(FollowedFrame {
+                middle: middle_of(&positions),
+                places: handles
+                    .map(|(_, vertices)| place(vertices, first, &positions))
+                    .collect(),
+            })
         };
         side_by_side(&frames, of_frame, watch)
     }

@@ -349,7 +349,7 @@ impl Application {
     /// know the way of the body.
     pub(super) fn follow_frames(&mut self, context: &egui::Context) {
         if self.editor.view().wants_following && !self.session.is_following() {
-            self.session.follow(&self.workers);
+            self.session.follow(self.editor.following(), &self.workers);
         }
         let wanted = self.editor.view().wanted_frame;
         if let Some(frame) = wanted

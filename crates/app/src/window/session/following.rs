@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pliant_editor::{FollowedFrame, JobQueue, Revision};
+use pliant_editor::{FollowedFrame, Following, JobQueue, Revision};
 use pliant_engine::OpenSequence;
 use pliant_engine::watch::Watch;
 
@@ -14,31 +14,34 @@ const STOPPED: &str = "Not all frames were read, so the path is not known: show 
 
 /// All frames are read, one group after the other.
 #[derive(Default)]
-pub struct Following {
-    reading: JobQueue<()>,
+pub struct FrameSearch {
+    reading: JobQueue<Following>,
     watch: Watch,
     last: u64,
     /// True if the running search is of a sequence that is no longer open.
     is_forgotten: bool,
 }
 
-impl Following {
-    /// Reads all frames, unless that is being done.
-    pub fn request(&mut self, sequence: &Arc<OpenSequence>, workers: &Workers) {
+impl FrameSearch {
+    /// Reads all frames, and follows these handles.
+    pub fn request(&mut self, following: Following, sequence: &Arc<OpenSequence>, workers: &Workers) {
         self.last += 1;
-        self.reading.request(Revision(self.last), ());
+        self.reading.request(Revision(self.last), following);
         // A search that was stopped ends first.
-        let Some((running, ())) = self.reading.start_next() else {
+        let Some((running, following)) = self.reading.start_next() else {
             return;
         };
         self.is_forgotten = false;
         let (stamp, watch) = (running.stamp, Watch::cancelled_by(&running.cancel));
         self.watch = watch.clone();
-        let sequence = Arc::clone(sequence);
+        let (sequence, failed) = (Arc::clone(sequence), following.clone());
         workers.spawn(
             "following",
-            move || Message::Followed(stamp, sequence.followed(&watch).map_err(|error| error.to_string())),
-            move |sentence| Message::Followed(stamp, Err(sentence)),
+            move || {
+                let frames = sequence.followed(&following, &watch).map_err(|error| error.to_string());
+                Message::Followed(stamp, following, frames)
+            },
+            move |sentence| Message::Followed(stamp, failed.clone(), Err(sentence)),
         );
     }
 

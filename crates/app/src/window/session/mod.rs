@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{FollowedFrame, JobQueue, Revision, SaveMark, StitchRequest};
+use pliant_editor::{FollowedFrame, Following, JobQueue, Revision, SaveMark, StitchRequest};
 
 use crate::files::original::Original;
 use crate::window::files::in_file::InFile;
@@ -20,7 +20,7 @@ use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
 use crate::window::files::writing::write;
-use crate::window::session::following::Following;
+use crate::window::session::following::FrameSearch;
 use crate::window::session::frames::FrameReads;
 pub use crate::window::session::frames::meant_by;
 pub use crate::window::session::open_file::OpenFile;
@@ -59,7 +59,7 @@ pub struct Session {
     /// The frames of the open sequence.
     frames: FrameReads,
     /// The body of the open sequence.
-    following: Following,
+    following: FrameSearch,
     /// The running change of the mesh.
     stitching: Option<(Revision, Watch)>,
 }
@@ -118,10 +118,10 @@ impl Session {
         self.frames.take(stamp, frame, shape)
     }
 
-    /// Follows the body of the open sequence through all frames, off the window's thread.
-    pub fn follow(&mut self, workers: &Workers) {
+    /// Follows the body and some handles of the open sequence through all frames, off the window's thread.
+    pub fn follow(&mut self, following: Following, workers: &Workers) {
         if let Some(sequence) = self.open.as_ref().and_then(|open| open.sequence.as_ref()) {
-            self.following.request(sequence, workers);
+            self.following.request(following, sequence, workers);
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::ExampleShape;
-use pliant_editor::{Beginning, FollowedFrame, JobDone, NewMesh, Revision, SavedAs, SnapshotKey};
+use pliant_editor::{Beginning, FollowedFrame, Following, JobDone, NewMesh, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Image, Materials, Surface};
 
@@ -36,7 +36,7 @@ pub enum Message {
     /// reason why not.
     Frame(Revision, usize, Result<Arc<Vec<DVec3>>, String>),
     /// The open sequence was followed through all frames, or the reason why not.
-    Followed(Revision, Result<Vec<FollowedFrame>, String>),
+    Followed(Revision, Following, Result<Vec<FollowedFrame>, String>),
     /// The open file's triangles were changed, or the reason why not.
     Stitched(Revision, Result<Box<Stitched>, Refusal>),
     /// A file was written, or the reason why not.

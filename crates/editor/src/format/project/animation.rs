@@ -8,6 +8,7 @@ use super::place::{StoredPlace, places, stored_places};
 use crate::document::{Animation, HandleCurve, HandleId, KeyFrame};
 use crate::ease::Ease;
 use crate::format::edit_error::EditError;
+use crate::format::filters::{FilterEntry, check_filters};
 use crate::format::path::PathEntry;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -23,6 +24,9 @@ pub(super) struct StoredAnimation {
     /// The bent path of the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     path: Option<PathEntry>,
+    /// The filters of handles' ways; each names its handle by its number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    filter: Vec<FilterEntry>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -68,6 +72,11 @@ impl StoredAnimation {
             time: animation.time(),
             keys: animation.keys().iter().map(key).collect(),
             path: animation.path().map(|path| PathEntry::of(path)),
+            filter: animation
+                .filters()
+                .iter()
+                .map(|(id, filter)| FilterEntry::of(&id.0.to_string(), filter))
+                .collect(),
         })
     }
 
@@ -115,6 +124,13 @@ impl StoredAnimation {
             path.check_of_document().map_err(|error| error.under("animation"))?;
         }
         let animation = Animation::of(self.keys.iter().map(key), self.time, self.fps);
-        Ok(animation.with_path(self.path.as_ref().and_then(PathEntry::path)))
+        let mut animation = animation.with_path(self.path.as_ref().and_then(PathEntry::path));
+        check_filters(&self.filter).map_err(|error| error.under("animation"))?;
+        for filter in &self.filter {
+            if let Ok(handle) = filter.handle.parse() {
+                animation = animation.with_filter(HandleId(handle), Some(filter.filter()));
+            }
+        }
+        Ok(animation)
     }
 }
