@@ -82,9 +82,9 @@ pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
     Access, Animation, BodyPath, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid,
-    HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleFilter, HandleId, HandleLine, HandleSketch,
-    HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach, SHARPEN_RANGE,
-    SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
+    HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleFilter, HandleFootprints, HandleId, HandleLine,
+    HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach,
+    SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;
@@ -114,7 +114,7 @@ pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{
-    BodyMotion, FollowedFrame, Following, HandlePlace, KeySpace, SequenceTimeline, Timeline, middle_of,
+    BodyMotion, FollowedFrame, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline, Timeline, middle_of,
 };
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

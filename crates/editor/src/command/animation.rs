@@ -1,14 +1,12 @@
 //! Commands on the edit over time: keys, the shown moment, play.
 
-use glam::DVec3;
-
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, ctrl, item, unless};
-use crate::document::{Animation, HandleFilter, HandleId, KeyId};
+use crate::document::{Animation, KeyId};
 use crate::ease::Ease;
 use crate::view::Skins;
 use crate::workspace::{
-    bend_path, copy_keys, delete_keys, free_path, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys,
-    set_filter, set_fps, set_key_ease, set_span, step_frames, stretch_keys,
+    copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
+    set_span, step_frames, stretch_keys,
 };
 
 /// Shows or hides the timeline.
@@ -54,67 +52,6 @@ pub(super) const SET_SKINS: Entry<Skins> = Entry {
         )
     },
     action: Action::Do(|context, skins| context.view.look.skins = skins),
-};
-
-/// Shows or hides the path of a sequence's body.
-pub(super) const TOGGLE_PATH: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Path of the body",
-        "Shows or hides the way of the whole body through a sequence: drag it in the view to bend it.",
-        "animation trajectory walk route bend ground",
-        &[],
-    )],
-    scope: Scope::View,
-    unavailable: |state, ()| no_sequence(state),
-    action: Action::Do(|context, ()| {
-        let look = &mut context.view.look;
-        look.path = !(look.path && look.timeline);
-        look.timeline |= look.path;
-        context.workspace.try_to_follow_again();
-    }),
-};
-
-/// Moves a sequence's body at a frame.
-pub(super) const BEND_PATH: Entry<(usize, DVec3)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (frame, shift)| {
-        let count = state.workspace.document.animation().frames().unwrap_or_default();
-        let is_way = *frame < count && shift.is_finite();
-        no_sequence(state).or(unless(is_way, "The sequence does not have this frame."))
-    },
-    action: Action::Do(|context, (frame, shift)| {
-        let up = context.view.camera().up;
-        bend_path(context.workspace, frame, shift, up);
-    }),
-};
-
-/// No longer moves a sequence's body at a frame.
-pub(super) const FREE_PATH: Entry<usize> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, frame| {
-        let path = state.workspace.document.animation().path();
-        let has_point = path.is_some_and(|path| path.has(*frame));
-        no_sequence(state).or(unless(has_point, "The path is not moved at this frame."))
-    },
-    action: Action::Do(|context, frame| free_path(context.workspace, frame)),
-};
-
-/// Filters a handle's way through a sequence, or no longer.
-pub(super) const SET_FILTER: Entry<(HandleId, Option<HandleFilter>)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (id, filter)| {
-        let count = state.workspace.document.animation().frames().unwrap_or_default();
-        let is_usable = filter.is_none_or(|filter| filter.is_usable(count));
-        no_sequence(state).or_else(|| state.gone(*id)).or(unless(
-            is_usable,
-            "A filter has frames of the sequence, a width of .1 to 1000 and an amount of 0 to 10.",
-        ))
-    },
-    action: Action::Do(|context, (id, filter)| set_filter(context.workspace, id, filter)),
 };
 
 /// Sets a key of every handle.
@@ -411,13 +348,6 @@ pub(super) const SET_FPS: Entry<f64> = Entry {
 fn no_keys(state: &State<'_>) -> Option<Reason> {
     let is_any = !state.workspace.keys.selected().is_empty();
     outside_work_pose(state).or(unless(is_any, "No key is selected: click one in the timeline."))
-}
-
-/// The reason if no sequence is open.
-fn no_sequence(state: &State<'_>) -> Option<Reason> {
-    let is_sequence = state.workspace.document.animation().frames().is_some();
-    let none = "A single shape has no way through frames: open a sequence.";
-    outside_work_pose(state).or(unless(is_sequence, none))
 }
 
 /// The reason if no file is open, or its handles are in a temporary pose.

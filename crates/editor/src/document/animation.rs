@@ -7,6 +7,7 @@ use super::body_path::BodyPath;
 use super::handle::{Handle, HandleId};
 use super::handle_curve::HandleCurve;
 use super::handle_filter::HandleFilter;
+use super::handle_footprints::HandleFootprints;
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -31,6 +32,8 @@ pub struct Animation {
     pub(super) path: Option<Arc<BodyPath>>,
     /// The filters of handles' ways through a sequence.
     pub(super) filters: Arc<BTreeMap<HandleId, HandleFilter>>,
+    /// The handles that are held wherever they rest on the ground.
+    pub(super) footprints: Arc<BTreeMap<HandleId, HandleFootprints>>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -93,6 +96,7 @@ impl Default for Animation {
             frames: None,
             path: None,
             filters: Arc::default(),
+            footprints: Arc::default(),
         }
     }
 }
@@ -113,6 +117,7 @@ impl Animation {
             frames: None,
             path: None,
             filters: Arc::default(),
+            footprints: Arc::default(),
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation

@@ -1,14 +1,15 @@
 //! The animation of a sequence: its keys are at frames, of which one is shown.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::animation::Animation;
+use super::animation::{Animation, KeyId};
 use super::body_path::BodyPath;
 use super::handle::HandleId;
 use super::handle_filter::HandleFilter;
+use super::handle_footprints::HandleFootprints;
 use crate::ground_axis::GroundAxis;
 
 impl Animation {
@@ -111,5 +112,32 @@ impl Animation {
             filters: Arc::new(filters),
             ..self.clone()
         }
+    }
+
+    /// The handles that are held wherever they rest on the ground.
+    pub fn footprints(&self) -> &Arc<BTreeMap<HandleId, HandleFootprints>> {
+        &self.footprints
+    }
+
+    /// The same animation with other footprints of a handle, or without any.
+    pub(crate) fn with_footprints(&self, handle: HandleId, footprints: Option<HandleFootprints>) -> Self {
+        let mut all = (*self.footprints).clone();
+        match footprints {
+            Some(footprints) => all.insert(handle, footprints),
+            None => all.remove(&handle),
+        };
+        Self {
+            footprints: Arc::new(all),
+            ..self.clone()
+        }
+    }
+
+    /// Drops the keys of handles with footprints, which nothing else moves.
+    pub(crate) fn drop_keys_of_footprints(&mut self) {
+        let held: BTreeSet<KeyId> = self
+            .ids()
+            .filter(|id| self.footprints.contains_key(&id.handle))
+            .collect();
+        self.take(&held);
     }
 }

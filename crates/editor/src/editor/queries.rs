@@ -127,6 +127,11 @@ impl Editor {
         self.workspace.following()
     }
 
+    /// The number of footprints of a handle; `None` without any, or until the frames were followed.
+    pub fn footprints_of(&self, handle: HandleId) -> Option<usize> {
+        self.workspace.footprints_of(handle)
+    }
+
     fn control_points(&self) -> Option<ControlPoints> {
         let declared = self.document().method().declaration().attachments.first()?;
         let shown = self.workspace.shown_controls()?;

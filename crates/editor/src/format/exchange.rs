@@ -140,7 +140,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         strength,
         keys: document_keys::entries(document, &region.handles),
         filter: document_keys::filters(document, &region.handles),
-        footprints: Vec::new(),
+        footprints: document_keys::footprints(document, &region.handles),
         path: document.animation().path().map(|path| PathEntry::of(path)),
         mix: None,
         weld: model.weld.distance,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
+use crate::document::HandleFootprints;
 use crate::ground_axis::GroundAxis;
 
 /// A handle that is held wherever it rests on the ground.
@@ -22,6 +23,35 @@ pub struct FootprintEntry {
     /// The number of frames before and after a footprint over which the handle goes over to its own way.
     #[serde(default = "usual_fade")]
     pub fade: u32,
+}
+
+impl FootprintEntry {
+    /// The footprints of a document's handle with this name.
+    pub(super) fn of(handle: &str, footprints: &HandleFootprints) -> Self {
+        let HandleFootprints {
+            up,
+            height,
+            speed,
+            fade,
+        } = *footprints;
+        Self {
+            handle: handle.to_owned(),
+            up,
+            height,
+            speed,
+            fade,
+        }
+    }
+
+    /// Its conditions.
+    pub fn footprints(&self) -> HandleFootprints {
+        HandleFootprints {
+            up: self.up,
+            height: self.height,
+            speed: self.speed,
+            fade: self.fade,
+        }
+    }
 }
 
 fn usual_fade() -> u32 {

@@ -11,6 +11,8 @@ use crate::document::{HandleId, Version};
 pub struct Following {
     /// The vertices of each, of which there is one at least.
     pub handles: Vec<(HandleId, Vec<SurfaceVertex>)>,
+    /// The numbers of those whose vertices' positions are wanted, too.
+    pub shaped: Vec<usize>,
     /// The paint that makes these handles.
     pub(crate) paint: Version,
 }
@@ -22,4 +24,6 @@ pub struct FollowedFrame {
     pub middle: DVec3,
     /// The places of the followed handles, in their order.
     pub places: Vec<HandlePlace>,
+    /// The positions of the vertices of the handles for which these are wanted.
+    pub shapes: Vec<Vec<DVec3>>,
 }

@@ -2,6 +2,7 @@
 
 mod filter;
 mod followed;
+mod footprints;
 mod frame_pose;
 mod interpolation;
 mod middle;
@@ -17,6 +18,7 @@ mod track;
 
 pub(crate) use self::filter::filter_shifts;
 pub use self::followed::{FollowedFrame, Following};
+pub use self::footprints::Footprints;
 pub(crate) use self::frame_pose::{frames_that_reach, transform_at};
 pub use self::middle::middle_of;
 pub use self::motion::Timeline;

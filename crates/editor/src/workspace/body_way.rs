@@ -59,6 +59,11 @@ impl BodyWay {
         self.middles.as_deref()
     }
 
+    /// Its motions along the bent path in all frames; none by its own way.
+    pub(super) fn motions(&self) -> &[BodyMotion] {
+        &self.motions
+    }
+
     /// Its motion along the bent path in a frame; `None` until all frames were read.
     pub(crate) fn motion(&self, frame: usize) -> Option<BodyMotion> {
         self.middles.as_ref()?;

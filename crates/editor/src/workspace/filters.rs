@@ -89,28 +89,35 @@ pub(crate) fn set_filter(workspace: &mut Workspace, handle: HandleId, filter: Op
 }
 
 impl Workspace {
-    /// The handles to follow through all frames; none if no way is filtered.
+    /// The handles to follow through all frames; none if no way is filtered, and no handle is held by footprints.
     pub(crate) fn following(&self) -> Following {
         let document = &self.document;
         let mut handles: BTreeMap<HandleId, Vec<SurfaceVertex>> = BTreeMap::new();
-        if !document.animation().filters().is_empty() {
+        let footprints = document.animation().footprints();
+        if !(document.animation().filters().is_empty() && footprints.is_empty()) {
             for (vertex, paint) in (0..).zip(document.paint()) {
                 if let Paint::Handle(id) = paint {
                     handles.entry(*id).or_default().push(SurfaceVertex(vertex));
                 }
             }
         }
+        let shaped = handles.keys().enumerate().filter(|(_, id)| footprints.contains_key(id));
         Following {
+            shaped: shaped.map(|(number, _)| number).collect(),
             handles: handles.into_iter().collect(),
             paint: document.versions().of(Aspect::Paint),
         }
     }
 
-    /// Returns true if filters wait for their handles to be followed.
+    /// Returns true if filters or footprints wait for their handles to be followed.
     pub(super) fn awaits_handles(&self) -> bool {
-        let document = &self.document;
-        let is_filtered = !document.animation().filters().is_empty();
-        is_filtered && !self.frames.has_failed && !self.frames.filters.knows(document.versions().of(Aspect::Paint))
+        let (animation, frames) = (self.document.animation(), &self.frames);
+        let paint = self.document.versions().of(Aspect::Paint);
+        let knows_places = animation.filters().is_empty() || frames.filters.knows(paint);
+        let knows_all = knows_places && frames.footprints.knows(paint, animation.footprints());
+        // Footprints rest on the bent path.
+        let knows_way = animation.footprints().is_empty() || !frames.way.is_unknown();
+        !(frames.has_failed || (knows_all && knows_way))
     }
 
     /// Takes the shifts by filters off a key of the shown frame, which they will move further. A handle that only its
@@ -130,11 +137,12 @@ impl Workspace {
         });
     }
 
-    /// Computes the shifts of filtered handles by the document's present filters.
+    /// Computes the shifts of filtered handles by the document's present filters, and the places of footprints.
     pub(super) fn follow_filters(&mut self) {
         let document = &self.document;
         let paint = document.versions().of(Aspect::Paint);
         let (filters, handles) = (document.animation().filters(), document.handles());
         self.frames.filters.follow(paint, filters, handles);
+        self.follow_footprints(paint);
     }
 }

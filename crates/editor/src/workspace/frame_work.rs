@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::body_way::BodyWay;
 use super::filters::FilterWork;
+use super::footprints::FootprintWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -27,6 +28,8 @@ pub(crate) struct FrameWork {
     pub(super) way: BodyWay,
     /// The shifts of handles by filters.
     pub(super) filters: FilterWork,
+    /// The places at which footprints hold handles.
+    pub(super) footprints: FootprintWork,
     /// True if not all frames could be read.
     pub(super) has_failed: bool,
 }

@@ -176,7 +176,9 @@ impl Workspace {
                     shift => transform.moved_by(shift),
                 }
             });
-            Some((handle.id, (pivot, transform)))
+            let held = frame.and_then(|frame| self.frames.footprints.held(handle.id, frame));
+            let place = FramePlace { pivot, transform, held };
+            Some((handle.id, place))
         };
         document.handles().iter().filter_map(place).collect()
     }

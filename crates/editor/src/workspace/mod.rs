@@ -14,6 +14,7 @@ mod examples;
 mod filters;
 mod flow;
 mod flow_play;
+mod footprints;
 mod frame_work;
 mod frames;
 mod freedom;
@@ -51,6 +52,7 @@ pub(crate) use curves::{
 };
 pub(crate) use examples::{add_example, keep_example, remove_example, rename_example, set_example_weight};
 pub(crate) use filters::set_filter;
+pub(crate) use footprints::set_footprints;
 pub(crate) use freedom::{aim_free_handles, free_or_hold_selected};
 pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{

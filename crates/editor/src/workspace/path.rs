@@ -1,9 +1,12 @@
 //! Actions on the bent path of a sequence's body.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::body_way::BodyWay;
 use super::state::Workspace;
+use crate::document::Animation;
 use crate::ground_axis::GroundAxis;
 use crate::timeline::{BodyMotion, FollowedFrame, Following};
 use crate::view::{Look, UpAxis};
@@ -20,15 +23,24 @@ pub(crate) fn bend_path(workspace: &mut Workspace, frame: usize, shift: DVec3, u
 pub(crate) fn put_path(workspace: &mut Workspace, frame: usize, shift: DVec3, up: UpAxis) {
     let animation = workspace.document.animation();
     let animation = animation.bend_path(frame, shift, ground_axis(up));
-    workspace.document.set_animation(animation);
+    put(workspace, animation);
 }
 
 /// No longer moves the body at a frame.
 pub(crate) fn free_path(workspace: &mut Workspace, frame: usize) {
     workspace.step("Remove path point", |workspace| {
         let animation = workspace.document.animation().free_path(frame);
-        workspace.document.set_animation(animation);
+        put(workspace, animation);
     });
+}
+
+/// Gives the document another path. Footprints rest on it.
+fn put(workspace: &mut Workspace, animation: Animation) {
+    let has_footprints = !animation.footprints().is_empty();
+    workspace.document.set_animation(animation);
+    if has_footprints {
+        workspace.pose_frame();
+    }
 }
 
 fn ground_axis(up: UpAxis) -> GroundAxis {
@@ -74,6 +86,8 @@ impl Workspace {
             (Ok(frames), Some(model)) if Some(frames.len()) == self.document.animation().frames() => {
                 self.frames.way.take(&frames, &model);
                 self.frames.filters.take(following, &frames);
+                let footprints = Arc::clone(self.document.animation().footprints());
+                self.frames.footprints.take(following, &frames, &footprints);
             }
             (Ok(_), _) => {}
             (Err(sentence), _) => {

@@ -25,6 +25,7 @@ fn followed(rig: &Rig) -> Vec<FollowedFrame> {
         .map(|number| FollowedFrame {
             middle: middle(number),
             places: Vec::new(),
+            shapes: Vec::new(),
         })
         .collect()
 }

@@ -37,6 +37,7 @@ fn follow(rig: &mut Rig) {
         FollowedFrame {
             middle: middle_of(&shape),
             places: following.handles.iter().map(|(_, vertices)| place(vertices)).collect(),
+            shapes: Vec::new(),
         }
     });
     let frames = frames.collect();

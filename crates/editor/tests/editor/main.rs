@@ -15,6 +15,7 @@ mod edit_format;
 mod examples;
 mod filters;
 mod flow;
+mod footprints;
 mod free_depth;
 mod habits;
 mod inside_out;

@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use pliant_editor::{
-    BodyMotion, EditError, EditFile, FootprintEntry, HandlePlace, PathPart, SequenceTimeline, Setup, middle_of,
+    BodyMotion, EditError, EditFile, FootprintEntry, Footprints, HandlePlace, PathPart, SequenceTimeline, Setup,
+    middle_of,
 };
 use pliant_mesh::{Drawn, SurfaceVertex};
 
 use super::bend::place;
-use super::footprints::Footprints;
+use super::held::Held;
 use super::side_by_side::side_by_side;
 use super::source::Source;
 use crate::EngineError;
@@ -120,7 +121,7 @@ impl Followed {
     }
 
     /// The footprints and the motions of the body. All frames were read if there are footprints.
-    pub fn footprints(self, entries: &[(usize, &FootprintEntry)]) -> (Vec<Footprints>, Vec<BodyMotion>) {
+    pub fn footprints(self, entries: &[(usize, &FootprintEntry)]) -> (Vec<Held>, Vec<BodyMotion>) {
         let mut shapes: Vec<Vec<Vec<DVec3>>> = vec![Vec::new(); entries.len()];
         for of_frame in self.frames.into_values() {
             for (shapes, shape) in shapes.iter_mut().zip(of_frame.shapes) {
@@ -128,7 +129,10 @@ impl Followed {
             }
         }
         let pairs = entries.iter().zip(&shapes);
-        let footprints = pairs.map(|((handle, entry), shapes)| Footprints::of(*handle, entry, shapes, &self.body));
+        let footprints = pairs.map(|((handle, entry), shapes)| Held {
+            handle: *handle,
+            footprints: Footprints::of(&entry.footprints(), shapes, &self.body),
+        });
         (footprints.collect(), self.body)
     }
 }

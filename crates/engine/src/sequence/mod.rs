@@ -8,8 +8,8 @@ mod bend;
 mod cache;
 mod folder;
 mod followed;
-mod footprints;
 mod frame;
+mod held;
 mod kind;
 mod leading;
 mod morphs;
@@ -122,7 +122,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
         method: setup.method.name().to_owned(),
         vertices: rest.file_vertex_count,
         frames: source.count(),
-        footprints: footprints.iter().map(|own| own.count).sum(),
+        footprints: footprints.iter().map(|own| own.footprints.count).sum(),
         ..SequenceReport::default()
     };
     report.warn(first.scene.notes().iter().cloned().chain(note));

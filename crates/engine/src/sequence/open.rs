@@ -146,11 +146,16 @@ impl OpenSequence {
             let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
             let first = &self.mesh.model.surface.positions;
             let handles = following.handles.iter();
+            let shape = |number: &usize| -> Vec<DVec3> {
+                let (_, vertices) = &following.handles[*number];
+                vertices.iter().map(|vertex| positions[vertex.index()]).collect()
+            };
             Ok(FollowedFrame {
                 middle: middle_of(&positions),
                 places: handles
                     .map(|(_, vertices)| place(vertices, first, &positions))
                     .collect(),
+                shapes: following.shaped.iter().map(shape).collect(),
             })
         };
         side_by_side(&frames, of_frame, watch)

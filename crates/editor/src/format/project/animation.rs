@@ -9,6 +9,7 @@ use crate::document::{Animation, HandleCurve, HandleId, KeyFrame};
 use crate::ease::Ease;
 use crate::format::edit_error::EditError;
 use crate::format::filters::{FilterEntry, check_filters};
+use crate::format::footprints::{FootprintEntry, check_footprints};
 use crate::format::path::PathEntry;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -27,6 +28,9 @@ pub(super) struct StoredAnimation {
     /// The filters of handles' ways; each names its handle by its number.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     filter: Vec<FilterEntry>,
+    /// The footprints of handles; each names its handle by its number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    footprints: Vec<FootprintEntry>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -76,6 +80,11 @@ impl StoredAnimation {
                 .filters()
                 .iter()
                 .map(|(id, filter)| FilterEntry::of(&id.0.to_string(), filter))
+                .collect(),
+            footprints: animation
+                .footprints()
+                .iter()
+                .map(|(id, footprints)| FootprintEntry::of(&id.0.to_string(), footprints))
                 .collect(),
         })
     }
@@ -129,6 +138,12 @@ impl StoredAnimation {
         for filter in &self.filter {
             if let Ok(handle) = filter.handle.parse() {
                 animation = animation.with_filter(HandleId(handle), Some(filter.filter()));
+            }
+        }
+        check_footprints(&self.footprints).map_err(|error| error.under("animation"))?;
+        for footprint in &self.footprints {
+            if let Ok(handle) = footprint.handle.parse() {
+                animation = animation.with_footprints(HandleId(handle), Some(footprint.footprints()));
             }
         }
         Ok(animation)
