@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Accuracy, Attachment, Bound, Solve, SolveError, Step, Valley};
+use pliant_deform::{Accuracy, Attachment, Bound, Solve, SolveError, Step, Target, Valley};
 use pliant_mesh::Cancel;
 
 use crate::document::{HandleCurve, HandleId, KeptShape};
@@ -34,6 +34,8 @@ pub struct Targets {
     line_share: f64,
     /// The free direction of each handle that has one.
     free_along: Vec<Option<DVec3>>,
+    /// The places of the vertices of handles that are held there, whatever their maps, by the handles' numbers.
+    held: Vec<(usize, Arc<Vec<DVec3>>)>,
     /// The positions of the brought control points, moved by hand.
     controls: Option<Arc<Vec<DVec3>>>,
     /// The weights of the examples, `None` for one to be found.
@@ -48,6 +50,7 @@ impl Targets {
             lines: Lines::default(),
             line_share: 1.0,
             free_along: Vec::new(),
+            held: Vec::new(),
             controls: attachment.and_then(Attachment::moved).cloned(),
             weights: match attachment {
                 Some(Attachment::Shapes(examples)) => examples.weights.clone(),
@@ -73,6 +76,12 @@ impl Targets {
             free_along: directions,
             ..self
         }
+    }
+
+    /// The same with handles whose vertices are held at places, by the handles' numbers.
+    #[must_use]
+    pub(crate) fn holding(self, held: Vec<(usize, Arc<Vec<DVec3>>)>) -> Self {
+        Self { held, ..self }
     }
 
     /// The same after the free points of curves have slid by these lengths.
@@ -109,9 +118,15 @@ impl Targets {
     /// Those of [`Bound::set_free_along`], [`Bound::set_places`], [`Bound::set_weights`] and [`Bound::set_controls`].
     pub fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
         bound.set_free_along(&self.free_along)?;
-        match self.lines.is_empty() {
+        match self.lines.is_empty() && self.held.is_empty() {
             true => bound.set_targets(&self.handles)?,
-            false => bound.set_places(&self.lines.targets(&self.handles, self.line_share))?,
+            false => {
+                let mut targets = self.lines.targets(&self.handles, self.line_share);
+                for (handle, places) in &self.held {
+                    targets[*handle] = Target::Places(places.to_vec());
+                }
+                bound.set_places(&targets)?;
+            }
         }
         // Examples of another method do not apply to this one.
         if bound.weights().len() == self.weights.len() {
@@ -191,6 +206,7 @@ impl Kept {
                 .slid(&[]),
             line_share: present.line_share,
             free_along: Vec::new(),
+            held: Vec::new(),
             controls: own.as_ref().filter(is_same).or(present.controls.as_ref()).cloned(),
             weights: self.shape.weights.clone(),
         };

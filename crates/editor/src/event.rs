@@ -14,6 +14,7 @@ use crate::document::{SaveMark, SavedAs};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;
 use crate::stitching::NewMesh;
+use crate::timeline::{FollowedFrame, Following};
 
 /// An event. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -88,6 +89,9 @@ pub enum Event {
     /// A frame of the sequence was read: the displacements of its surface vertices from the file's shape, or the reason
     /// why it can't be shown, in one sentence.
     Frame(usize, Result<Arc<Vec<DVec3>>, String>),
+    /// All frames of the sequence were followed, as [`SceneView::wants_following`](crate::SceneView::wants_following)
+    /// asks, with the handles of [`Editor::following`](crate::Editor::following), or the reason why they can't be, in one sentence.
+    Followed(Following, Result<Vec<FollowedFrame>, String>),
     /// A change of the mesh ([`Editor::take_stitch`](crate::Editor::take_stitch)) has ended: the new mesh, or the reason
     /// why there is none, in one sentence.
     Stitched(Result<Box<NewMesh>, String>),

@@ -53,9 +53,11 @@ mod ease;
 mod editor;
 mod evenly;
 mod event;
+mod filter_kind;
 mod flow_start;
 mod format;
 mod former;
+mod ground_axis;
 mod input;
 mod jobs;
 mod lines;
@@ -79,22 +81,24 @@ pub use bending::{Bent, Carried, Kept, Start, Targets, Until, settle};
 pub use command::{Command, KeyMap, Listed, Shortcut, WITHOUT_EXAMPLES};
 pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
-    Access, Animation, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid, HANDLE_COLOURS,
-    HISTORY_BYTES, Handle, HandleCurve, HandleId, HandleLine, HandleSketch, HandleTransform, History, KeptShape,
-    KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach, SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips,
-    Twin, object_name, sum_of_shapes,
+    Access, Animation, BodyPath, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid,
+    HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleFilter, HandleFootprints, HandleId, HandleLine,
+    HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach,
+    SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;
 pub use event::Event;
+pub use filter_kind::FilterKind;
 pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FilterEntry, FilterKind, FlowFile, FlowMotion, FootprintEntry, GroundAxis,
-    HandleEntry, HandleSetup, JoinsFile, KeyEntry, MeshReference, MixEntry, PathEntry, Placement, PoseEntry, Project,
+    ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, HandleEntry,
+    HandleSetup, JoinsFile, KeyEntry, MeshReference, MixEntry, PathEntry, PathPart, Placement, PoseEntry, Project,
     Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;
+pub use ground_axis::GroundAxis;
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
     Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,
@@ -109,7 +113,9 @@ pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
-pub use timeline::{BodyMotion, HandlePlace, KeySpace, SequenceTimeline, Timeline};
+pub use timeline::{
+    BodyMotion, FollowedFrame, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline, Timeline, middle_of,
+};
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,
     StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,

@@ -13,6 +13,7 @@ use crate::document::{Handle, HandleId, KeyId};
 use crate::jobs::{Descent, JobKind, Skin, Symmetry};
 use crate::region::Counts;
 use crate::stitching::MergeSettings;
+use crate::timeline::BodyMotion;
 use crate::tool::{
     BrushMetric, CorrectionBrush, Depth, FlowBrush, PointedRim, RimUse, StiffnessBrush, StrokeShape, ToolMode,
 };
@@ -23,7 +24,7 @@ use crate::view::{Camera, ControlShape, Cursor, GizmoOrientation, GizmoShape, Lo
 pub struct SceneView<'a> {
     /// The open file's vertex sets; `None` before the first file.
     pub model: Option<&'a Arc<Model>>,
-    /// The camera, which gives the matrices.
+    /// The camera, which gives the matrices. It is in the space of the shown frame, as everything that is shown.
     pub camera: &'a Camera,
     /// The view's size in points.
     pub viewport_px: DVec2,
@@ -103,6 +104,14 @@ pub struct SceneView<'a> {
     /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
     /// awaited.
     pub wanted_frame: Option<usize>,
+    /// True if all frames of a sequence must be read and followed ([`Event::Followed`](crate::Event::Followed)).
+    pub wants_following: bool,
+    /// The frame of the body's path under the pointer.
+    pub pointed_frame: Option<usize>,
+    /// The camera in the world, to which the body's path may have carried the shown frame.
+    pub world_camera: &'a Camera,
+    /// The motion of the shown frame along the path, into the world.
+    pub body_motion: BodyMotion,
     /// True while the flow plays.
     pub is_playing: bool,
     /// The pressure of a pen, 0 to 1; `None` until the system reports it.

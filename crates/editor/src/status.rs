@@ -2,7 +2,7 @@
 
 use crate::jobs::{Activity, JobKind};
 use crate::region::Counts;
-use crate::tool::{Gesture, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_hint};
+use crate::tool::{Gesture, Overlay, PointedRim, RimUse, StrokeShape, ToolMode, ToolSettings, cut_hint};
 use crate::view::View;
 use crate::workspace::{Workspace, selected_curve};
 
@@ -12,7 +12,7 @@ pub(crate) fn status(
     workspace: &Workspace,
     view: &View,
     settings: &ToolSettings,
-    rim: Option<&PointedRim>,
+    overlay: &Overlay,
 ) -> String {
     let Some(model) = workspace.model() else {
         return "Open a mesh, or drop one here".to_owned();
@@ -25,7 +25,7 @@ pub(crate) fn status(
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.or_else(|| {
-        let hint = rim_hint(settings.wants_rim?, rim);
+        let hint = rim_hint(settings.wants_rim?, overlay.rim.as_ref());
         Some(match settings.pair_numbers(workspace).len() {
             0 => hint,
             1 => format!("{hint}; Ctrl+Z takes the last place back"),
@@ -33,6 +33,14 @@ pub(crate) fn status(
         })
     });
     let now = now.or_else(|| settings.wants_cut.map(cut_hint));
+    let now = now.or_else(|| {
+        let frame = overlay.pointed_frame?;
+        let path = workspace.document.animation().path();
+        Some(match path.is_some_and(|path| path.has(frame)) {
+            true => format!("The path at frame {frame}: drag it, or remove this point with Ctrl and a click"),
+            false => format!("The path at frame {frame}: drag it to bend the way of the whole body"),
+        })
+    });
     let now = now.unwrap_or_else(|| hint(workspace, settings));
     let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
     let parts = [

@@ -116,6 +116,7 @@ fn look(options: &StillOptions) -> Look {
         original: false,
         base: false,
         timeline: false,
+        path: false,
         skins: Skins::default(),
         before: Before::Off,
     }

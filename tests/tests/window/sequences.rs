@@ -91,6 +91,13 @@ fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
     files
 }
 
+/// Edits the sequence by the command line.
+fn by_command(sequence: &Path, edit: &Path, output: &Path) {
+    let [sequence, edit, output] = [sequence, edit, output].map(|path| path.to_str().unwrap());
+    let words = ["sequence", sequence, "--edit", edit, "--output", output];
+    assert_eq!(run(words).status, 0);
+}
+
 #[test]
 fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     let folder = Folder::new();
@@ -136,15 +143,7 @@ fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     session.settle();
     let said = session.harness.state().headline().unwrap_or_default().to_owned();
     assert!(said.starts_with("Saved"), "{said}");
-    let words = [
-        "sequence",
-        walk.to_str().unwrap(),
-        "--edit",
-        edit.to_str().unwrap(),
-        "--output",
-        theirs.to_str().unwrap(),
-    ];
-    assert_eq!(run(words).status, 0);
+    by_command(&walk, &edit, &theirs);
     let exported = bytes(&own);
     assert!(exported == bytes(&theirs));
     let is_same = |frame: usize| {
@@ -159,6 +158,24 @@ fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     view.model.unwrap().drawn_positions(view.displacements, &mut shown);
     let away = largest_distance(&written, &shown);
     assert!(away < 1e-9, "{away}");
+    // The path of the body: all frames are followed by a job, and the command line's files are again the same.
+    command(&mut session, Command::TogglePath);
+    assert!(!session.harness.state().editor().view().wants_following);
+    let way = DVec3::new(0.5, 0.0, -0.25);
+    command(&mut session, Command::BendPath(8, way));
+    let edit = session.harness.state().editor().edit_file().unwrap();
+    let edit = folder.write("bent.json", edit.to_json());
+    let [bent, theirs] = ["bent", "their-bent"].map(|name| folder.at(name));
+    session.harness.state_mut().export_frames(&bent);
+    session.settle();
+    by_command(&walk, &edit, &theirs);
+    assert!(bytes(&bent) == bytes(&theirs));
+    // The frame that is shown is carried to where it was written.
+    let written = open_mesh(&bent.join("ball-8.obj")).model.rest_positions();
+    let motion = session.harness.state().editor().view().body_motion;
+    let carried: Vec<DVec3> = shown.iter().map(|place| motion.moved(*place)).collect();
+    let away = largest_distance(&written, &carried);
+    assert!(motion.moves() && away < 1e-9, "{away}");
     // Nothing is lost in a folder that has something in it.
     session.harness.state_mut().export_frames(&own);
     session.settle();

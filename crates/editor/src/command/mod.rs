@@ -24,6 +24,7 @@ mod shortcut;
 mod table;
 mod transform;
 mod view;
+mod ways;
 
 pub(crate) use entry::{Scope, State};
 pub use examples::WITHOUT_EXAMPLES;

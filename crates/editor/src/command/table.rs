@@ -10,11 +10,12 @@ use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{
     animation, controls, curves, document, examples, flow, handle, held_part, look, mesh, object, paint, pose, region,
-    transform, view,
+    transform, view, ways,
 };
 use crate::cut::KeptSide;
 use crate::document::{
-    FlowOptions, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace, Reach, SmallParts, Tips,
+    FlowOptions, HandleFilter, HandleFootprints, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace,
+    Reach, SmallParts, Tips,
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
@@ -50,7 +51,7 @@ fn group_of(entry: &str) -> &'static str {
         "controls" => "Cage and lattice",
         "examples" => "Examples",
         "pose" => "Poses",
-        "animation" => "Animation",
+        "animation" | "ways" => "Animation",
         "paint" => "Tools and brush",
         "flow" => "Flow",
         "curves" => "Curves",
@@ -176,6 +177,17 @@ commands! {
     ToggleSkins = animation::TOGGLE_SKINS;
     /// Chooses these ghosts.
     SetSkins(skins: Skins) = animation::SET_SKINS;
+    /// Shows or hides the path of a sequence's body.
+    TogglePath = ways::TOGGLE_PATH;
+    /// Moves a sequence's body at a frame, by a way in world units. The first such frame brings both ends of the sequence,
+    /// at which the body stays.
+    BendPath(frame: usize, shift: DVec3) = ways::BEND_PATH;
+    /// No longer moves a sequence's body at a frame.
+    FreePath(frame: usize) = ways::FREE_PATH;
+    /// Filters a handle's way through a sequence, or no longer.
+    SetFilter(handle: HandleId, filter: Option<HandleFilter>) = ways::SET_FILTER;
+    /// Holds a handle of a sequence wherever it rests on the ground, or no longer.
+    SetFootprints(handle: HandleId, footprints: Option<HandleFootprints>) = ways::SET_FOOTPRINTS;
     /// Sets a key of every handle at the shown moment.
     KeyHere = animation::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.

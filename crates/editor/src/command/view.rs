@@ -298,7 +298,7 @@ pub(super) const VIEW: Entry<NamedView> = Entry {
     ],
     scope: Scope::View,
     unavailable: always,
-    action: Action::Do(|context, side| context.view.travel(|camera| camera.look_from(side))),
+    action: Action::Do(|context, side| context.view.look_from(side)),
 };
 
 /// Shows everything that is not hidden.

@@ -3,8 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::body_path::BodyPath;
 use super::handle::{Handle, HandleId};
 use super::handle_curve::HandleCurve;
+use super::handle_filter::HandleFilter;
+use super::handle_footprints::HandleFootprints;
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -25,6 +28,12 @@ pub struct Animation {
     pub(super) fps: f64,
     /// The number of frames of the sequence that is edited, at least 1; `None` for an edit of one shape.
     pub(super) frames: Option<usize>,
+    /// The bent path of a sequence's body; `None` if it is the body's own.
+    pub(super) path: Option<Arc<BodyPath>>,
+    /// The filters of handles' ways through a sequence.
+    pub(super) filters: Arc<BTreeMap<HandleId, HandleFilter>>,
+    /// The handles that are held wherever they rest on the ground.
+    pub(super) footprints: Arc<BTreeMap<HandleId, HandleFootprints>>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -85,6 +94,9 @@ impl Default for Animation {
             time: 0.0,
             fps: FPS,
             frames: None,
+            path: None,
+            filters: Arc::default(),
+            footprints: Arc::default(),
         }
     }
 }
@@ -103,6 +115,9 @@ impl Animation {
             time,
             fps,
             frames: None,
+            path: None,
+            filters: Arc::default(),
+            footprints: Arc::default(),
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation
@@ -262,14 +277,15 @@ impl Animation {
         }
     }
 
-    /// The memory of the keys.
+    /// The memory of the keys and of the path.
     pub(super) fn bytes(&self) -> usize {
         let of_curve = |curve: &HandleCurve| curve.moved().len() * 10 * size_of::<f64>();
         let of_key = |key: &KeyFrame| {
             let curves = key.curves.values().map(of_curve).sum::<usize>();
             size_of::<KeyFrame>() + key.handles.len() * size_of::<(HandleId, Placed)>() + curves
         };
-        self.keys.iter().map(of_key).sum()
+        let of_path = self.path.as_ref().map_or(0, |path| path.bytes());
+        self.keys.iter().map(of_key).sum::<usize>() + of_path
     }
 
     /// A time that is allowed, on the frame that it means.

@@ -1,8 +1,16 @@
 //! The animation of a sequence: its keys are at frames, of which one is shown.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::animation::Animation;
+use glam::DVec3;
+
+use super::animation::{Animation, KeyId};
+use super::body_path::BodyPath;
+use super::handle::HandleId;
+use super::handle_filter::HandleFilter;
+use super::handle_footprints::HandleFootprints;
+use crate::ground_axis::GroundAxis;
 
 impl Animation {
     /// The same keys for the frames of a sequence, of which one is shown.
@@ -12,6 +20,14 @@ impl Animation {
             ..self.clone()
         };
         animation.tidy_spans();
+        animation.path = animation
+            .path
+            .and_then(|path| path.only(|frame| frame < count))
+            .map(Arc::new);
+        let last = count.max(1) - 1;
+        for filter in Arc::make_mut(&mut animation.filters).values_mut() {
+            filter.span = filter.span.map(|frame| frame.min(last));
+        }
         animation.at_frame(self.frame_at(self.time).round() as usize)
     }
 
@@ -45,5 +61,83 @@ impl Animation {
             }
         }
         animation
+    }
+
+    /// The bent path of the sequence's body; `None` if it is the body's own.
+    pub fn path(&self) -> Option<&Arc<BodyPath>> {
+        self.path.as_ref()
+    }
+
+    /// The same animation with another path.
+    pub(crate) fn with_path(&self, path: Option<BodyPath>) -> Self {
+        Self {
+            path: path.map(Arc::new),
+            ..self.clone()
+        }
+    }
+
+    /// Moves the body at a frame of the sequence. The first such frame brings both ends of the sequence, at which the body
+    /// stays.
+    pub(crate) fn bend_path(&self, frame: usize, shift: DVec3, up: GroundAxis) -> Self {
+        let path = match self.path() {
+            Some(path) => Some(path.with(frame, shift)),
+            None => {
+                let last = self.frames.map_or(0, |count| count - 1);
+                let mut shifts = BTreeMap::from([0, last].map(|end| (end, DVec3::ZERO)));
+                shifts.insert(frame, shift);
+                BodyPath::of(shifts, up)
+            }
+        };
+        self.with_path(path)
+    }
+
+    /// No longer moves the body at a frame. With fewer than two such frames the path is the body's own.
+    pub(crate) fn free_path(&self, frame: usize) -> Self {
+        self.with_path(self.path().and_then(|path| path.only(|own| own != frame)))
+    }
+
+    /// The filters of handles' ways.
+    pub fn filters(&self) -> &Arc<BTreeMap<HandleId, HandleFilter>> {
+        &self.filters
+    }
+
+    /// The same animation with another filter of a handle's way, or without one.
+    pub(crate) fn with_filter(&self, handle: HandleId, filter: Option<HandleFilter>) -> Self {
+        let mut filters = (*self.filters).clone();
+        match filter {
+            Some(filter) => filters.insert(handle, filter),
+            None => filters.remove(&handle),
+        };
+        Self {
+            filters: Arc::new(filters),
+            ..self.clone()
+        }
+    }
+
+    /// The handles that are held wherever they rest on the ground.
+    pub fn footprints(&self) -> &Arc<BTreeMap<HandleId, HandleFootprints>> {
+        &self.footprints
+    }
+
+    /// The same animation with other footprints of a handle, or without any.
+    pub(crate) fn with_footprints(&self, handle: HandleId, footprints: Option<HandleFootprints>) -> Self {
+        let mut all = (*self.footprints).clone();
+        match footprints {
+            Some(footprints) => all.insert(handle, footprints),
+            None => all.remove(&handle),
+        };
+        Self {
+            footprints: Arc::new(all),
+            ..self.clone()
+        }
+    }
+
+    /// Drops the keys of handles with footprints, which nothing else moves.
+    pub(crate) fn drop_keys_of_footprints(&mut self) {
+        let held: BTreeSet<KeyId> = self
+            .ids()
+            .filter(|id| self.footprints.contains_key(&id.handle))
+            .collect();
+        self.take(&held);
     }
 }

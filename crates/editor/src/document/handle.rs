@@ -1,5 +1,7 @@
 //! A handle: a part of the surface that is moved as a whole, with all its settings.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 use pliant_mesh::MirrorPlane;
 
@@ -55,6 +57,9 @@ pub struct Handle {
     /// The unit direction along which it is free, in world space: its transform holds it across this direction only, and
     /// it slides along it to where the energy is least.
     pub free_along: Option<DVec3>,
+    /// The places at which a footprint holds its vertices in the shown frame of a sequence, in world space, whatever its
+    /// transform.
+    pub(crate) held: Option<Arc<Vec<DVec3>>>,
 }
 
 /// The place of a handle's pivot.
@@ -122,6 +127,7 @@ impl Handle {
             bend_deg: FREE_BEND_DEG,
             line: None,
             free_along: None,
+            held: None,
         }
     }
 
@@ -139,6 +145,8 @@ impl Handle {
             HandleTransform::Matrix(_) => DVec3::ZERO,
         };
         self.transform = transform;
+        // Who moves it by hand lets it go.
+        self.held = None;
     }
 
     /// Returns true if a binding depends on nothing in which the lines of both differ: on the curve at rest and its
@@ -197,7 +205,7 @@ impl Handle {
 
     /// Returns true if it is away from its rest position.
     pub fn is_displaced(&self) -> bool {
-        !self.transform.is_identity() || self.line.as_ref().is_some_and(|line| !line.is_rest())
+        !self.transform.is_identity() || self.held.is_some() || self.line.as_ref().is_some_and(|line| !line.is_rest())
     }
 
     /// The present position of its pivot, in world space.

@@ -149,6 +149,7 @@ impl Editor {
                 self.view.look.timeline = true;
             }
             Event::Frame(frame, shape) => self.workspace.take_frame(frame, shape),
+            Event::Followed(following, frames) => self.workspace.take_followed(&following, frames),
             Event::Stitched(result) => {
                 self.abort_gesture();
                 take_stitched(&mut self.workspace, result.map(|new| *new));
@@ -169,6 +170,8 @@ impl Editor {
         if self.gesture.is_none() || self.workspace.is_adjusting() {
             self.workspace.show_wanted_frame();
         }
+        self.workspace.follow_path();
+        self.view.follow_body(self.workspace.body_motion());
         let gesture = self.gesture.as_deref();
         let activity = match gesture.map(Gesture::activity) {
             // Nothing prepares for the pointer between two frames.
@@ -433,9 +436,9 @@ impl Editor {
             workspace.open(model, name, document);
             workspace.refusal = refusal;
         });
-        if !self.workspace.document.animation().keys().is_empty() {
-            self.view.look.timeline = true;
-        }
+        let animation = self.workspace.document.animation();
+        self.view.look.path = animation.path().is_some();
+        self.view.look.timeline |= self.view.look.path || !animation.keys().is_empty();
         if matches!(beginning, Some(Beginning::Project(_))) {
             self.workspace.history.needs(SavedAs::Project);
         }

@@ -18,6 +18,7 @@ use crate::scene_view::{ControlPoints, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::stitching::StitchRequest;
+use crate::timeline::Following;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::{Cursor, Look, Pick};
 use crate::warning::in_window_words;
@@ -79,6 +80,10 @@ impl Editor {
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             wanted_frame: workspace.frame_to_read(),
+            wants_following: gesture.is_none() && workspace.wants_following(&view.look),
+            pointed_frame: self.overlay.pointed_frame,
+            world_camera: view.world_camera(),
+            body_motion: view.body(),
             is_playing: workspace.flow.is_playing(),
             pressure: settings.pressure,
             orientation: settings.orientation,
@@ -93,7 +98,7 @@ impl Editor {
             handles: document.handles(),
             selected: workspace.selection.selected(),
             companions: workspace.selection.companions(),
-            status: status(gesture, workspace, view, settings, self.overlay.rim.as_ref()),
+            status: status(gesture, workspace, view, settings, &self.overlay),
             problem: workspace.refusal.as_deref(),
             jobs: workspace.jobs.running(),
             counts: workspace.computed().region.counts,
@@ -115,6 +120,16 @@ impl Editor {
             change,
             snapshot: self.snapshot()?,
         })
+    }
+
+    /// The handles to follow while all frames of a sequence are read.
+    pub fn following(&self) -> Following {
+        self.workspace.following()
+    }
+
+    /// The number of footprints of a handle; `None` without any, or until the frames were followed.
+    pub fn footprints_of(&self, handle: HandleId) -> Option<usize> {
+        self.workspace.footprints_of(handle)
     }
 
     fn control_points(&self) -> Option<ControlPoints> {
@@ -159,7 +174,7 @@ impl Editor {
     fn cursor(&self) -> Cursor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
-            None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.overlay.takes_press() => Cursor::Grab,
             None if self.overlay.takes_handle => Cursor::Grab,
             None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,

@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
+use super::filters::FilterEntry;
+use super::footprints::FootprintEntry;
 use super::keys::{CurveKey, KeyEntry};
 use super::pivoted::{pivoted, without_pivot};
 use super::setup::Setup;
@@ -69,6 +71,20 @@ fn frame_entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
         }
     }
     entries
+}
+
+/// The filters of the document's handles, which are in the edit.
+pub(super) fn filters(document: &Document, handles: &[HandleId]) -> Vec<FilterEntry> {
+    let filters = document.animation().filters();
+    let entry = |id: &HandleId| Some(FilterEntry::of(&document.handle(*id)?.name, filters.get(id)?));
+    handles.iter().filter_map(entry).collect()
+}
+
+/// The footprints of the document's handles, which are in the edit.
+pub(super) fn footprints(document: &Document, handles: &[HandleId]) -> Vec<FootprintEntry> {
+    let footprints = document.animation().footprints();
+    let entry = |id: &HandleId| Some(FootprintEntry::of(&document.handle(*id)?.name, footprints.get(id)?));
+    handles.iter().filter_map(entry).collect()
 }
 
 /// Gives a document of the edit the edit's keys, and moves its handles to their positions at time 0.

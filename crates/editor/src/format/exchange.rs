@@ -9,6 +9,7 @@ use pliant_mesh::Model;
 use super::attachment::AttachmentEntry;
 use super::document_keys;
 use super::examples::entries_of;
+use super::path::PathEntry;
 use super::pivoted::{with_pivot, without_pivot};
 use super::project::StoredKept;
 use super::selector::ranges_of;
@@ -141,9 +142,9 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         }),
         strength,
         keys: document_keys::entries(document, &region.handles),
-        filter: Vec::new(),
-        footprints: Vec::new(),
-        path: None,
+        filter: document_keys::filters(document, &region.handles),
+        footprints: document_keys::footprints(document, &region.handles),
+        path: document.animation().path().map(|path| PathEntry::of(path)),
         mix: None,
         weld: model.weld.distance,
     };

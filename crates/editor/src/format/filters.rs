@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
+use crate::document::HandleFilter;
+use crate::filter_kind::{AMOUNT_RANGE, FilterKind, WIDTH_RANGE};
 
 /// A filter of the trajectory of one handle.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -22,22 +24,6 @@ pub struct FilterEntry {
     pub amount: f64,
 }
 
-/// The effect of a filter.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase", expecting = "\"smooth\" or \"exaggerate\"")]
-pub enum FilterKind {
-    /// Takes quick motions off.
-    Smooth,
-    /// Adds quick motions once more: the handle swings back before it moves, and beyond its end (the cartoon filter).
-    Exaggerate,
-}
-
-/// The narrowest and the widest filter, in frames.
-const WIDTH_RANGE: std::ops::RangeInclusive<f64> = 0.1..=1000.0;
-
-/// The least and the largest share of a filter.
-const AMOUNT_RANGE: std::ops::RangeInclusive<f64> = 0.0..=10.0;
-
 fn usual_width() -> f64 {
     2.0
 }
@@ -47,11 +33,24 @@ fn all_of_it() -> f64 {
 }
 
 impl FilterEntry {
-    /// The share of the quick motions that is added to the trajectory.
-    pub(super) fn gain(&self) -> f64 {
-        match self.kind {
-            FilterKind::Smooth => -self.amount,
-            FilterKind::Exaggerate => self.amount,
+    /// The filter of a document's handle with this name.
+    pub(super) fn of(handle: &str, filter: &HandleFilter) -> Self {
+        Self {
+            handle: handle.to_owned(),
+            span: filter.span.map(|frame| frame as u32),
+            kind: filter.kind,
+            width: filter.width,
+            amount: filter.amount,
+        }
+    }
+
+    /// The same for a document.
+    pub(super) fn filter(&self) -> HandleFilter {
+        HandleFilter {
+            span: self.span.map(|frame| frame as usize),
+            kind: self.kind,
+            width: self.width,
+            amount: self.amount,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Footprints of an edit: parts that rest on the ground for some frames.
 
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
+use crate::document::HandleFootprints;
+use crate::ground_axis::GroundAxis;
 
 /// A handle that is held wherever it rests on the ground.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -24,23 +25,31 @@ pub struct FootprintEntry {
     pub fade: u32,
 }
 
-/// An axis that points up.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase", expecting = "\"y\" or \"z\"")]
-pub enum GroundAxis {
-    /// As in glTF and in most scans.
-    #[default]
-    Y,
-    /// As in Blender.
-    Z,
-}
+impl FootprintEntry {
+    /// The footprints of a document's handle with this name.
+    pub(super) fn of(handle: &str, footprints: &HandleFootprints) -> Self {
+        let HandleFootprints {
+            up,
+            height,
+            speed,
+            fade,
+        } = *footprints;
+        Self {
+            handle: handle.to_owned(),
+            up,
+            height,
+            speed,
+            fade,
+        }
+    }
 
-impl GroundAxis {
-    /// Its direction, of length 1.
-    pub(super) fn direction(self) -> DVec3 {
-        match self {
-            Self::Y => DVec3::Y,
-            Self::Z => DVec3::Z,
+    /// Its conditions.
+    pub fn footprints(&self) -> HandleFootprints {
+        HandleFootprints {
+            up: self.up,
+            height: self.height,
+            speed: self.speed,
+            fade: self.fade,
         }
     }
 }

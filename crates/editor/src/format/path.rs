@@ -4,15 +4,18 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::edit_error::EditError;
-use super::footprints::GroundAxis;
 use super::transform::Numbers;
+use crate::document::BodyPath;
+use crate::ground_axis::GroundAxis;
 
 /// The path of a whole body, bent by moving it at some frames.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PathEntry {
-    /// The name of the handle whose middle makes the path, such as the hips.
-    pub handle: String,
+    /// The name of the handle whose middle makes the path, such as the hips; without a name it is the middle of the whole
+    /// body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub handle: Option<String>,
     /// The frames at which the path is moved, ascending, at least two.
     pub frames: Vec<u32>,
     /// The way of the body at each of them, in world units.
@@ -23,6 +26,21 @@ pub struct PathEntry {
 }
 
 impl PathEntry {
+    /// The path of the whole body.
+    pub(super) fn of(path: &BodyPath) -> Self {
+        Self {
+            handle: None,
+            frames: path.shifts().map(|(frame, _)| frame as u32).collect(),
+            translations: path.shifts().map(|(_, shift)| Numbers(shift.to_array())).collect(),
+            up: path.up(),
+        }
+    }
+
+    /// The same for a document; `None` with fewer than two frames.
+    pub(super) fn path(&self) -> Option<BodyPath> {
+        BodyPath::of(self.shifts(1.0).into_iter().collect(), self.up)
+    }
+
     /// The frames, and the share `strength` of the way of the body at each.
     pub(super) fn shifts(&self, strength: f64) -> Vec<(usize, DVec3)> {
         let ways = self.translations.iter().map(|way| DVec3::from_array(way.0) * strength);
@@ -51,6 +69,17 @@ impl PathEntry {
             )));
         }
         Ok(())
+    }
+
+    /// Refuses those of [`check`](Self::check), and the path of a handle: that of a document is the whole body's.
+    pub(super) fn check_of_document(&self) -> Result<(), EditError> {
+        if self.handle.is_some() {
+            return Err(EditError::Other {
+                place: "path".to_owned(),
+                sentence: "has a `handle`, but the path of a project is that of the whole body: remove it".to_owned(),
+            });
+        }
+        self.check()
     }
 
     /// Refuses frames that a sequence of `count` frames does not have.

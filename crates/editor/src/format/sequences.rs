@@ -9,6 +9,15 @@ use super::path::PathEntry;
 use crate::timeline::{BodyMotion, body_motions};
 use crate::warning::shortened;
 
+/// The part of a body whose middle makes the path.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum PathPart {
+    /// All of it.
+    Body,
+    /// A handle, by its number.
+    Handle(usize),
+}
+
 impl EditFile {
     /// The first member that only a sequence has.
     pub fn member_of_sequences(&self) -> Option<&'static str> {
@@ -24,17 +33,20 @@ impl EditFile {
             .map(|(member, _)| member)
     }
 
-    /// The number of the handle whose middle makes the path of the body, if the edit bends it.
+    /// The part whose middle makes the path of the body, if the edit bends it.
     ///
     /// # Errors
     /// A name that no handle has, or that two handles have.
-    pub fn handle_of_path(&self) -> Result<Option<usize>, EditError> {
+    pub fn part_of_path(&self) -> Result<Option<PathPart>, EditError> {
         let Some(path) = &self.path else { return Ok(None) };
-        let found = handle_of(&path.handle, &self.names());
-        found.map(Some).map_err(|error| error.under("path.handle"))
+        let Some(name) = &path.handle else {
+            return Ok(Some(PathPart::Body));
+        };
+        let found = handle_of(name, &self.names()).map_err(|error| error.under("path.handle"))?;
+        Ok(Some(PathPart::Handle(found)))
     }
 
-    /// The motions of the body by its bent path, where the path's handle has its middle at `trajectory` in each frame; none
+    /// The motions of the body by its bent path, where the path's part has its middle at `trajectory` in each frame; none
     /// without a path. The path's frames are frames of the trajectory.
     pub fn body_motions(&self, trajectory: &[DVec3]) -> Vec<BodyMotion> {
         let motions = |path: &PathEntry| body_motions(trajectory, &path.shifts(self.strength), path.up.direction());

@@ -13,7 +13,7 @@ use super::selector::Selector;
 use super::setup::Setup;
 use crate::HandleTransform;
 use crate::document::SplitTransform;
-use crate::timeline::{HandlePlace, SequenceTimeline, Span, SpanKey, quick_motions};
+use crate::timeline::{HandlePlace, SequenceTimeline, Span, SpanKey, filter_shifts};
 use crate::warning::shortened;
 
 impl EditFile {
@@ -182,14 +182,12 @@ impl EditFile {
             let handle = handle_of(&filter.handle, names).map_err(in_filter)?;
             let parent = self.handles[handle].parent.map(|parent| parent as usize);
             let frames = filter.span[0] as usize..=filter.span[1] as usize;
-            let seen = frames.clone().map(|frame| match parent {
-                Some(parent) => place(frame, handle).seen_from(&place(frame, parent)),
-                None => place(frame, handle).centre(),
-            });
-            let quick = quick_motions(&seen.collect::<Vec<DVec3>>(), filter.width);
-            for (frame, quick) in frames.zip(quick) {
-                let shift = quick * filter.gain();
-                let shift = parent.map_or(shift, |parent| place(frame, parent).world_from_own(shift));
+            let places = frames
+                .clone()
+                .map(|frame| (place(frame, handle), parent.map(|parent| place(frame, parent))));
+            let gain = filter.kind.gain(filter.amount);
+            let own = filter_shifts(&places.collect::<Vec<_>>(), filter.width, gain);
+            for (frame, shift) in frames.zip(own) {
                 *shifts[handle].entry(frame).or_insert(DVec3::ZERO) += shift * self.strength;
             }
         }

@@ -182,7 +182,9 @@ pub(super) fn targets(document: &Document, method: &Method, handles: &[HandleId]
     let own = attachments.find(|(name, _)| declared.attachment(name).is_some());
     let targets = Targets::new(maps(document, handles)?, own.map(|(_, attachment)| attachment));
     let free_along = handles.iter().map(|id| document.freedom(*id));
-    Some(targets.free_along(free_along.collect()))
+    let held = handles.iter().enumerate();
+    let held = held.filter_map(|(number, id)| Some((number, document.handle(*id)?.held.clone()?)));
+    Some(targets.free_along(free_along.collect()).holding(held.collect()))
 }
 
 /// The lines of a binding of `handles` with the document's present ways of their curves.

@@ -2,12 +2,30 @@
 
 use glam::DVec3;
 
+use super::span::HandlePlace;
+
 /// The Gaussian is cut off at this many standard deviations.
 const REACH: f64 = 4.0;
 
+/// The shifts of a handle by a filter with a Gaussian of standard deviation `width`, in frames, which adds `gain` times the
+/// quick motions. `places` has the handle's place in each frame of the filter's span, and its parent's if it has one: its
+/// way is then filtered as the parent sees it.
+pub(crate) fn filter_shifts(places: &[(HandlePlace, Option<HandlePlace>)], width: f64, gain: f64) -> Vec<DVec3> {
+    let seen = places.iter().map(|(own, parent)| match parent {
+        Some(parent) => own.seen_from(parent),
+        None => own.centre(),
+    });
+    let quick = quick_motions(&seen.collect::<Vec<DVec3>>(), width);
+    let shifts = quick.iter().zip(places).map(|(quick, (_, parent))| {
+        let shift = *quick * gain;
+        parent.map_or(shift, |parent| parent.world_from_own(shift))
+    });
+    shifts.collect()
+}
+
 /// The quick motions of a trajectory: its difference from its mean by a Gaussian with the standard deviation `width`, in
 /// frames. Beyond its ends the trajectory is continued by its image in the end point, so both ends are at 0.
-pub(crate) fn quick_motions(trajectory: &[DVec3], width: f64) -> Vec<DVec3> {
+fn quick_motions(trajectory: &[DVec3], width: f64) -> Vec<DVec3> {
     let reach = (REACH * width).ceil() as i64;
     let weight = |step: i64| (-0.5 * (step as f64 / width).powi(2)).exp();
     let sum: f64 = (-reach..=reach).map(weight).sum();

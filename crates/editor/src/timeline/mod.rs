@@ -1,8 +1,11 @@
 //! Handles' motions over time: keys, and the transforms between them.
 
 mod filter;
+mod followed;
+mod footprints;
 mod frame_pose;
 mod interpolation;
+mod middle;
 mod motion;
 mod numbers;
 mod path;
@@ -13,8 +16,11 @@ mod span;
 mod spline;
 mod track;
 
-pub(crate) use self::filter::quick_motions;
+pub(crate) use self::filter::filter_shifts;
+pub use self::followed::{FollowedFrame, Following};
+pub use self::footprints::Footprints;
 pub(crate) use self::frame_pose::{frames_that_reach, transform_at};
+pub use self::middle::middle_of;
 pub use self::motion::Timeline;
 pub(crate) use self::motion::values_of;
 pub(crate) use self::numbers::{NumberTrack, Values};

@@ -27,6 +27,18 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
+    /// The motion that moves nothing.
+    pub(crate) const STILL: Self = Self {
+        from: DVec3::ZERO,
+        shift: DVec3::ZERO,
+        turn: DQuat::IDENTITY,
+    };
+
+    /// The turn about the upright axis.
+    pub(crate) fn turn(&self) -> DQuat {
+        self.turn
+    }
+
     /// Returns true if it moves anything.
     pub fn moves(&self) -> bool {
         self.shift != DVec3::ZERO || self.turn != DQuat::IDENTITY
@@ -42,7 +54,10 @@ impl BodyMotion {
 
     /// The point whose place is this.
     pub fn before(&self, place: DVec3) -> DVec3 {
-        self.from + self.turn.inverse() * (place - self.shift - self.from)
+        match self.turn == DQuat::IDENTITY {
+            true => place - self.shift,
+            false => self.from + self.turn.inverse() * (place - self.shift - self.from),
+        }
     }
 }
 

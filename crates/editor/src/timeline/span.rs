@@ -12,6 +12,7 @@ use pliant_deform::RigidMotion;
 use serde::{Deserialize, Serialize};
 
 use super::interpolation::between;
+use super::middle::middle_of;
 use crate::document::SplitTransform;
 use crate::ease::Ease;
 
@@ -39,12 +40,10 @@ impl HandlePlace {
     /// The place of a handle whose vertices are at `first` in the first frame and at `now` in this one. Both have at
     /// least one entry.
     pub fn of(first: &[DVec3], now: &[DVec3]) -> Self {
-        let origin = now[0];
-        let from_origin: DVec3 = now.iter().map(|position| *position - origin).sum();
         let displacements: Vec<DVec3> = now.iter().zip(first).map(|(now, first)| *now - *first).collect();
         let motion = RigidMotion::fit(first, &displacements);
         Self {
-            centre: origin + from_origin / now.len() as f64,
+            centre: middle_of(now),
             rotation: motion.map_or(DQuat::IDENTITY, |motion| motion.rotation()),
         }
     }

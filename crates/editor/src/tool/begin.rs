@@ -15,6 +15,7 @@ use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
 use super::outline::OutlineStroke;
 use super::paint::PaintStroke;
+use super::path_drag::PathDrag;
 use super::pose::PoseDrag;
 use super::rim::RimUse;
 use super::sketch_stroke::SketchStroke;
@@ -28,7 +29,7 @@ use crate::document::Paint;
 use crate::input::{Button, Pointer};
 use crate::stitching::MeshChange;
 use crate::view::{GizmoPart, Pick};
-use crate::workspace::{set_pivot, stitch};
+use crate::workspace::{free_path, set_pivot, stitch};
 
 /// The beginning of a gesture.
 type Begun = Option<Box<dyn Gesture>>;
@@ -56,6 +57,12 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
                 && let Some(point) = control_under(context, pointer) =>
         {
             return take_control(context, pointer, point);
+        }
+        Button::Primary
+            if !modifiers.alt
+                && let Some(frame) = path_under(context, pointer) =>
+        {
+            return take_path(context, pointer, frame);
         }
         Button::Primary if modifiers.ctrl && boxes_controls(context) => {
             return Some(Box::new(ControlBox::begin(pointer, StrokeShape::Box)));
@@ -152,6 +159,24 @@ fn control_under(context: &Context<'_>, pointer: Pointer) -> Option<u32> {
     let at_px = pointer.position_px;
     let is_gizmo = context.overlay.grabbed(at_px, context.view, context.settings).is_some();
     (!is_gizmo).then_some(point)
+}
+
+/// The frame of the body's path under the pointer, if a press takes it.
+fn path_under(context: &Context<'_>, pointer: Pointer) -> Option<usize> {
+    let frame = context.overlay.pointed_frame?;
+    let at_px = pointer.position_px;
+    let is_gizmo = context.overlay.grabbed(at_px, context.view, context.settings).is_some();
+    (!is_gizmo).then_some(frame)
+}
+
+/// Begins to drag the body's path at a frame; with Ctrl it is no longer moved there.
+fn take_path(context: &mut Context<'_>, pointer: Pointer, frame: usize) -> Begun {
+    context.workspace.refusal = None;
+    if pointer.modifiers.ctrl {
+        free_path(context.workspace, frame);
+        return None;
+    }
+    Some(Box::new(PathDrag::begin(context, pointer, frame)?))
 }
 
 /// Returns true if a box or a lasso selects control points.

@@ -35,6 +35,8 @@ mod other_side;
 mod outline;
 mod overlay;
 mod paint;
+mod path_drag;
+mod path_places;
 mod picked_pairs;
 mod polyline;
 mod pose;

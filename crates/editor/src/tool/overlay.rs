@@ -10,6 +10,7 @@ use super::brush::ring;
 use super::hidden_points::HiddenPoints;
 use super::intersections::intersection_shapes;
 use super::mode::{StrokeShape, ToolMode};
+use super::path_places::PathPlaces;
 use super::pose::{Limb, joint_shapes, limb_under};
 use super::rim::{PointedRim, RimUse, Rims};
 use super::settings::ToolSettings;
@@ -61,6 +62,8 @@ pub(crate) struct Overlay {
     /// The rims of the mesh while one is wanted, and the one that a press takes.
     rims: Rims,
     pub(crate) rim: Option<PointedRim>,
+    /// The frame of the body's path that a press takes.
+    pub(crate) pointed_frame: Option<usize>,
 }
 
 /// The colour of the ring at which a soft brush has half of its strength.
@@ -70,6 +73,11 @@ const INNER_RING: [u8; 4] = [255, 255, 255, 130];
 const FADED: f64 = 0.4;
 
 impl Overlay {
+    /// Returns true if a press takes a part of the gizmo, a control point or a place of the path.
+    pub(crate) fn takes_press(&self) -> bool {
+        self.hovered.is_some() || self.pointed_control.is_some() || self.pointed_frame.is_some()
+    }
+
     /// The part of the gizmo that a press at a point of the viewport grabs.
     pub(crate) fn grabbed(&self, position_px: DVec2, view: &View, settings: &ToolSettings) -> Option<GizmoPart> {
         let part = self.hit(&self.gizmo, position_px, view);
@@ -155,6 +163,10 @@ impl Overlay {
         let is_in_front = settings.mode == ToolMode::Select || settings.draws_curves() || !is_over_surface;
         let control_px = pointer_px.filter(|_| takes_points && is_in_front);
         let controls = self.draw_controls(lines, control_px, view);
+        let path = PathPlaces::of(workspace, view);
+        let path_px = control_px.filter(|_| self.pointed_control.is_none() && !settings.waits_for_press());
+        self.pointed_frame = path_px.and_then(|px| path.as_ref()?.at(px, view));
+        shapes.extend(path.map_or_else(Vec::new, |path| path.shapes(self.pointed_frame, view)));
         let joint_px = pointer_px.filter(|_| highlighted.is_none());
         shapes.extend(joint(lit, workspace, view, settings, joint_px));
         let rim_px = pointer_px.filter(|_| lit == Lit::Pointed);

@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::{Camera, NamedView, Orbit, Projection, UpAxis};
+use crate::timeline::BodyMotion;
 
 /// The limit of the turntable's tip up and down: the poles themselves.
 const MAX_PITCH_RAD: f64 = FRAC_PI_2;
@@ -38,7 +39,11 @@ impl Camera {
     /// Turns about the view's own axes, by radians, without keeping up.
     fn roll_ball(&mut self, angles_rad: DVec2) {
         let turn = DQuat::from_scaled_axis(DVec3::new(-angles_rad.y, -angles_rad.x, 0.0));
-        let turned = self.axes() * DMat3::from_quat(turn);
+        self.set_axes(self.axes() * DMat3::from_quat(turn));
+    }
+
+    /// Looks along other axes from the same distance to the target.
+    fn set_axes(&mut self, turned: DMat3) {
         let backward = match self.up {
             UpAxis::Y => turned.z_axis,
             UpAxis::Z => DVec3::new(turned.z_axis.x, turned.z_axis.z, -turned.z_axis.y),
@@ -47,6 +52,27 @@ impl Camera {
         self.yaw_rad = backward.x.atan2(backward.z).rem_euclid(TAU);
         let level = self.level_axes();
         self.roll_rad = turned.x_axis.dot(level.y_axis).atan2(turned.x_axis.dot(level.x_axis));
+    }
+
+    /// The camera that sees a body after its motion `to` as this one sees it after its motion `from`.
+    pub(super) fn carried(&self, from: &BodyMotion, to: &BodyMotion) -> Self {
+        let mut camera = Self {
+            target: to.before(from.moved(self.target)),
+            ..*self
+        };
+        let turn = (to.turn().inverse() * from.turn()).normalize();
+        let up = self.up.vector();
+        if turn.xyz() == DVec3::ZERO {
+            return camera;
+        }
+        match turn.xyz().cross(up) == DVec3::ZERO {
+            true => {
+                let angle = 2.0 * turn.xyz().dot(up).atan2(turn.w);
+                camera.yaw_rad = (self.yaw_rad + angle).rem_euclid(TAU);
+            }
+            false => camera.set_axes(DMat3::from_quat(turn) * self.axes()),
+        }
+        camera
     }
 
     /// Looks from the opposite side.

@@ -81,7 +81,7 @@ const RIM_PX: f64 = 1.3;
 const PIN_PX: f64 = 3.2;
 
 /// The pointer's distance to a point within which it takes the point.
-const GRAB_PX: f64 = 8.0;
+pub(crate) const GRAB_PX: f64 = 8.0;
 
 /// The shapes: edges, the frames of pinned points, the points' rims, points and selected ones. A curve inside a limb is
 /// visible through it.

@@ -29,6 +29,8 @@ pub struct Look {
     pub base: bool,
     /// True if the timeline is shown.
     pub timeline: bool,
+    /// True if the path of a sequence's body is shown, while the timeline is.
+    pub path: bool,
     /// The ghosts of other moments, while the timeline is shown.
     pub skins: Skins,
     /// The way in which the file's own shape is shown with the present one.
@@ -50,6 +52,7 @@ impl Default for Look {
             original: false,
             base: false,
             timeline: false,
+            path: false,
             skins: Skins::default(),
             before: Before::Off,
         }

@@ -18,7 +18,7 @@ pub(crate) use arc::arc_shapes;
 pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
 pub(crate) use camera_history::CameraStep;
 pub use control_shapes::ControlShape;
-pub(crate) use control_shapes::{ShownPoint, control_at, control_shapes};
+pub(crate) use control_shapes::{GRAB_PX, ShownPoint, control_at, control_shapes};
 pub(crate) use gizmo::axis_vector;
 pub(crate) use gizmo::distance_to_segment;
 pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};

@@ -2,14 +2,20 @@
 
 use glam::{DVec2, DVec3};
 
-use super::camera::{Camera, Orbit, UpAxis};
+use super::camera::{Camera, NamedView, Orbit, Ray, UpAxis};
 use super::camera_history::{CameraHistory, CameraStep};
 use super::look::Look;
+use crate::timeline::BodyMotion;
 
 /// The camera, and the look of the surface.
 #[derive(Debug)]
 pub(crate) struct View {
+    /// In the space of the shown body, which its path may have carried to another place of the world.
     camera: Camera,
+    /// The same camera in the world.
+    world: Camera,
+    /// The motion of the body along its path; `None` until it is known.
+    body: Option<BodyMotion>,
     history: CameraHistory,
     viewport_px: DVec2,
     /// Grows when camera or viewport changed.
@@ -24,6 +30,8 @@ impl Default for View {
     fn default() -> Self {
         Self {
             camera: Camera::default(),
+            world: Camera::default(),
+            body: None,
             history: CameraHistory::default(),
             viewport_px: DVec2::new(1280.0, 800.0),
             revision: 0,
@@ -37,6 +45,37 @@ impl Default for View {
 impl View {
     pub(crate) fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// The ray through a point of the viewport in the world, where bodies are at the places to which their paths carry
+    /// them.
+    pub(crate) fn world_ray(&self, position_px: DVec2) -> Ray {
+        self.world.ray(position_px, self.viewport_px)
+    }
+
+    /// The motion of the body along its path.
+    pub(crate) fn body(&self) -> BodyMotion {
+        self.body.unwrap_or(BodyMotion::STILL)
+    }
+
+    /// The camera in the world.
+    pub(crate) fn world_camera(&self) -> &Camera {
+        &self.world
+    }
+
+    /// Follows the body's motion along its path: the camera stays in the world. When the motion becomes known, the body
+    /// is already in the picture, and the camera stays with it.
+    pub(crate) fn follow_body(&mut self, body: Option<BodyMotion>) {
+        if body == self.body {
+            return;
+        }
+        let had = std::mem::replace(&mut self.body, body);
+        if had.is_some() && body.is_some() {
+            self.camera = self.world.carried(&BodyMotion::STILL, &self.body());
+            self.revision += 1;
+        } else {
+            self.world = self.camera.carried(&self.body(), &BodyMotion::STILL);
+        }
     }
 
     /// The view's size in points.
@@ -79,6 +118,7 @@ impl View {
         let before = self.camera;
         change(&mut self.camera);
         if self.camera != before {
+            self.world = self.camera.carried(&self.body(), &BodyMotion::STILL);
             self.revision += 1;
         }
     }
@@ -113,6 +153,14 @@ impl View {
         });
     }
 
+    /// Looks from a side of the world.
+    pub(crate) fn look_from(&mut self, side: NamedView) {
+        let mut world = self.world;
+        world.look_from(side);
+        let camera = world.carried(&BodyMotion::STILL, &self.body());
+        self.travel(|present| *present = camera);
+    }
+
     /// Frames a point.
     pub(crate) fn approach(&mut self, point: DVec3) {
         self.travel(|camera| {
@@ -123,6 +171,8 @@ impl View {
 
     /// Begins a file of this size and up axis without a place to go back to.
     pub(crate) fn open(&mut self, scale: Option<f64>, up: UpAxis) {
+        self.body = None;
+        self.world = self.camera;
         self.adjust(|camera| {
             camera.up = up;
             camera.scale = scale.unwrap_or(camera.scale);
@@ -132,13 +182,14 @@ impl View {
 
     /// Goes back to an earlier view, or forth again.
     pub(crate) fn step(&mut self, step: CameraStep) {
-        if let Some(camera) = self.history.step(step, self.camera) {
+        if let Some(camera) = self.history.step(step, self.world) {
+            let camera = camera.carried(&BodyMotion::STILL, &self.body());
             self.travel(|present| *present = camera);
         }
     }
 
     /// Notes that no gesture moves the camera.
     pub(crate) fn rest(&mut self) {
-        self.history.rest(self.camera);
+        self.history.rest(self.world);
     }
 }

@@ -5,6 +5,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::body_way::BodyWay;
+use super::filters::FilterWork;
+use super::footprints::FootprintWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -21,6 +24,14 @@ pub(crate) struct FrameWork {
     pub(super) places: BTreeMap<usize, BTreeMap<HandleId, HandlePlace>>,
     /// The paint to which these belong.
     pub(super) places_of: Option<Version>,
+    /// The way of the body through all frames.
+    pub(super) way: BodyWay,
+    /// The shifts of handles by filters.
+    pub(super) filters: FilterWork,
+    /// The places at which footprints hold handles.
+    pub(super) footprints: FootprintWork,
+    /// True if not all frames could be read.
+    pub(super) has_failed: bool,
 }
 
 impl FrameWork {

@@ -99,7 +99,7 @@ impl Workspace {
     /// Shows the wanted frame if it was read.
     pub(crate) fn show_wanted_frame(&mut self) {
         let Some(wanted) = self.frames.wanted else { return };
-        if self.frame_to_read().is_some() {
+        if self.frame_to_read().is_some() || self.awaits_handles() {
             return;
         }
         let Some((_, shape)) = self.frames.read.take_if(|(frame, _)| *frame == wanted) else {
@@ -126,19 +126,20 @@ impl Workspace {
     pub(super) fn pose_frame(&mut self) {
         let (frame, shape) = (self.document.animation().frame(), Arc::clone(&self.document.rest));
         self.note_places(frame, &shape);
-        match self.unknown_frame(frame) {
-            None => self.put_frame(frame, &shape),
-            Some(_) if self.frames.wanted.is_none() => {
+        match self.unknown_frame(frame).is_none() && !self.awaits_handles() {
+            true => self.put_frame(frame, &shape),
+            false if self.frames.wanted.is_none() => {
                 self.frames.wanted = Some(frame);
                 self.frames.read = Some((frame, shape));
             }
             // It is brought there with the next frame.
-            Some(_) => {}
+            false => {}
         }
     }
 
     fn put_frame(&mut self, frame: usize, shape: &Arc<Vec<DVec3>>) {
         self.note_places(frame, shape);
+        self.follow_filters();
         let places = self.frame_places(Some(frame), shape);
         let document = &mut self.document;
         document.put_frame(frame, shape, &places);
@@ -169,9 +170,15 @@ impl Workspace {
                     true => Some(*own),
                     false => self.frames.places.get(&key)?.get(&handle.id).copied(),
                 };
-                transform_at(document.animation(), handle, (frame, own, pivot), place_at)
+                let transform = transform_at(document.animation(), handle, (frame, own, pivot), place_at);
+                match self.frames.filters.shift(handle.id, frame) {
+                    DVec3::ZERO => transform,
+                    shift => transform.moved_by(shift),
+                }
             });
-            Some((handle.id, (pivot, transform)))
+            let held = frame.and_then(|frame| self.frames.footprints.held(handle.id, frame));
+            let place = FramePlace { pivot, transform, held };
+            Some((handle.id, place))
         };
         document.handles().iter().filter_map(place).collect()
     }

@@ -18,7 +18,8 @@ use crate::view::Look;
 
 /// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
 pub(crate) fn key_here(workspace: &mut Workspace, is_wanted: impl Fn(HandleId) -> bool) {
-    let key = present_key(&workspace.document, is_wanted);
+    let mut key = present_key(&workspace.document, is_wanted);
+    workspace.without_filters(&mut key);
     workspace.edit_keys("Key here", |animation| Some(animation.put_all(vec![key])));
 }
 
@@ -173,6 +174,7 @@ impl Workspace {
         self.step(name, |workspace| {
             let mut animation = workspace.document.animation().clone();
             let selected = change(&mut animation);
+            animation.drop_keys_of_footprints();
             animation.tidy_spans();
             let time = animation.time();
             workspace.document.set_animation(animation);

@@ -1,5 +1,6 @@
 //! A person's work, the actions on it, and their consequences.
 
+mod body_way;
 mod colour_revisions;
 mod colours;
 mod consequences;
@@ -10,8 +11,10 @@ mod crease_width;
 mod curves;
 mod dirty_colours;
 mod examples;
+mod filters;
 mod flow;
 mod flow_play;
+mod footprints;
 mod frame_work;
 mod frames;
 mod freedom;
@@ -24,6 +27,7 @@ mod mirror_request;
 mod objects;
 mod options;
 mod painting;
+mod path;
 mod poses;
 mod regions;
 mod selection;
@@ -47,6 +51,8 @@ pub(crate) use curves::{
     divide_curve, pin_or_unpin_curve_points, remove_curve_points, selected_curve, set_bend_range, sharpen_crease,
 };
 pub(crate) use examples::{add_example, keep_example, remove_example, rename_example, set_example_weight};
+pub(crate) use filters::set_filter;
+pub(crate) use footprints::set_footprints;
 pub(crate) use freedom::{aim_free_handles, free_or_hold_selected};
 pub(crate) use handle_values::{set_continuity, set_parent, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
@@ -66,6 +72,7 @@ pub(crate) use options::{
     apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength, set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
+pub(crate) use path::{BEND_PATH, bend_path, free_path, put_path};
 pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;

@@ -3,6 +3,7 @@
 
 mod animation;
 mod appended_parts;
+mod body_paths;
 mod carried;
 mod comparison;
 mod controls;
@@ -12,7 +13,9 @@ mod curve_strokes;
 mod curves;
 mod edit_format;
 mod examples;
+mod filters;
 mod flow;
+mod footprints;
 mod free_depth;
 mod habits;
 mod inside_out;

@@ -12,10 +12,10 @@ use pliant_editor::{Beginning, Command, Event, HandleId, HandlePlace, HandleTran
 use pliant_mesh::{Drawn, shapes};
 
 /// The number of frames.
-const COUNT: usize = 40;
+pub const COUNT: usize = 40;
 
 /// The displacements of a frame of a ball that wanders, turns and ripples.
-fn frame(rig: &Rig, frame: usize) -> Arc<Vec<DVec3>> {
+pub fn frame(rig: &Rig, frame: usize) -> Arc<Vec<DVec3>> {
     let t = frame as f64 / COUNT as f64;
     let turn = DQuat::from_rotation_y(1.5 * t);
     let way = DVec3::new(0.3 * t, 0.05 * (9.0 * t).sin(), 0.1 * t);
@@ -23,7 +23,7 @@ fn frame(rig: &Rig, frame: usize) -> Arc<Vec<DVec3>> {
     Arc::new(rig.model.surface.positions.iter().map(place).collect())
 }
 
-fn open(drawn: Drawn) -> Rig {
+pub fn open(drawn: Drawn) -> Rig {
     let mut rig = Rig::open(drawn);
     rig.send(Event::OpenedSequence {
         count: COUNT,
@@ -34,7 +34,7 @@ fn open(drawn: Drawn) -> Rig {
 }
 
 /// Reads the frames that are wanted, and runs all jobs.
-fn deliver(rig: &mut Rig) {
+pub fn deliver(rig: &mut Rig) {
     while let Some(wanted) = rig.editor.view().wanted_frame {
         assert!(!rig.editor.is_settled());
         let shape = frame(rig, wanted);
@@ -43,7 +43,7 @@ fn deliver(rig: &mut Rig) {
     rig.drain();
 }
 
-fn go_to(rig: &mut Rig, frame: usize) {
+pub fn go_to(rig: &mut Rig, frame: usize) {
     let fps = rig.editor.document().animation().fps();
     rig.command(Command::GoToTime(frame as f64 / fps));
     deliver(rig);

@@ -8,7 +8,7 @@ use pliant_deform::{Budget, Ordering, Role, Target};
 use pliant_editor::{BodyMotion, HandlePlace, Rest, SequenceTimeline, Setup, settle};
 use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
 
-use super::footprints::Footprints;
+use super::held::Held;
 use crate::EngineError;
 use crate::apply::bind;
 use crate::watch::Watch;
@@ -23,7 +23,7 @@ pub(super) struct Bending<'a> {
     pub ordering: Option<&'a Ordering>,
     pub budget: Budget,
     /// The footprints of handles.
-    pub footprints: &'a [Footprints],
+    pub footprints: &'a [Held],
     /// The vertices of each handle.
     pub handles: &'a [Vec<SurfaceVertex>],
     /// The motions of the whole body in all frames; none if its path is not bent.
@@ -67,10 +67,10 @@ fn maps(targets: &[Target]) -> Option<Vec<DAffine3>> {
 impl Bending<'_> {
     /// The handles' targets in a frame whose surface is at `positions`; `None` if no handle moves.
     fn targets(&self, frame: usize, positions: &[DVec3]) -> Option<Vec<Target>> {
-        let held: Vec<&Footprints> = self
+        let held: Vec<&Held> = self
             .footprints
             .iter()
-            .filter(|own| own.places.contains_key(&frame))
+            .filter(|own| own.footprints.places.contains_key(&frame))
             .collect();
         if held.is_empty() && !self.timeline.reaches(frame) {
             return None;
@@ -79,9 +79,11 @@ impl Bending<'_> {
         let handles = self.handles.iter();
         let places: Vec<HandlePlace> = handles.map(|vertices| place(vertices, first, positions)).collect();
         let maps = self.timeline.maps_at(frame, &places);
-        let is_moved = |own: &&Footprints| {
+        let is_moved = |own: &&Held| {
             let mut now = self.handles[own.handle].iter().map(|vertex| positions[vertex.index()]);
-            own.places[&frame].iter().any(|place| now.next() != Some(*place))
+            own.footprints.places[&frame]
+                .iter()
+                .any(|place| now.next() != Some(*place))
         };
         if maps.is_none() && !held.iter().any(is_moved) {
             return None;
@@ -89,7 +91,7 @@ impl Bending<'_> {
         let maps = maps.unwrap_or_else(|| vec![DAffine3::IDENTITY; self.handles.len()]);
         let mut targets: Vec<Target> = maps.into_iter().map(Target::Map).collect();
         for own in held {
-            targets[own.handle] = Target::Places(own.places[&frame].clone());
+            targets[own.handle] = Target::Places(own.footprints.places[&frame].clone());
         }
         Some(targets)
     }

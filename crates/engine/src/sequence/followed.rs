@@ -4,12 +4,15 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use pliant_editor::{BodyMotion, EditError, EditFile, FootprintEntry, HandlePlace, SequenceTimeline, Setup};
+use pliant_editor::{
+    BodyMotion, EditError, EditFile, FootprintEntry, Footprints, HandlePlace, PathPart, SequenceTimeline, Setup,
+    middle_of,
+};
 use pliant_mesh::{Drawn, SurfaceVertex};
-use rayon::prelude::*;
 
 use super::bend::place;
-use super::footprints::Footprints;
+use super::held::Held;
+use super::side_by_side::side_by_side;
 use super::source::Source;
 use crate::EngineError;
 use crate::loading::Loaded;
@@ -21,8 +24,8 @@ pub(super) struct Handles<'a> {
     pub vertices: &'a [Vec<SurfaceVertex>],
     /// Those with footprints.
     pub footprints: &'a [(usize, &'a FootprintEntry)],
-    /// The one whose middle makes the path of the body.
-    pub path: Option<usize>,
+    /// The part whose middle makes the path of the body.
+    pub path: Option<PathPart>,
     /// Those that another sequence leads.
     pub led: &'a [usize],
 }
@@ -43,6 +46,8 @@ struct OfFrame {
     shapes: Vec<Vec<DVec3>>,
     /// The place of each led handle in the other sequence.
     led: Vec<HandlePlace>,
+    /// The middle of the part that makes the path of the body.
+    middle: Option<DVec3>,
 }
 
 impl Followed {
@@ -57,15 +62,13 @@ impl Followed {
         (edit, handles): (&EditFile, &Handles<'_>),
         watch: &Watch,
     ) -> Result<Self, EngineError> {
-        let progress = watch.begin("following the handles");
         let rest = &first.model.surface.positions;
         let place_in = |positions: &[DVec3], handle: usize| place(&handles.vertices[handle], rest, positions);
         let places = |positions: &[DVec3]| -> Vec<HandlePlace> {
             let numbers = 0..handles.vertices.len();
             numbers.map(|handle| place_in(positions, handle)).collect()
         };
-        let of_frame = |frame: usize| -> Result<(usize, OfFrame), EngineError> {
-            watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
+        let of_frame = |frame: usize| -> Result<OfFrame, EngineError> {
             let positions = source.positions(frame, mesh, watch)?;
             let led = match other {
                 None => Vec::new(),
@@ -78,27 +81,21 @@ impl Followed {
                 let vertices = handles.vertices[*handle].iter();
                 vertices.map(|vertex| positions[vertex.index()]).collect()
             };
+            let places = places(&positions);
             let of_frame = OfFrame {
-                places: places(&positions),
+                middle: handles.path.map(|part| match part {
+                    PathPart::Body => middle_of(&positions),
+                    PathPart::Handle(handle) => places[handle].centre(),
+                }),
+                places,
                 shapes: handles.footprints.iter().map(shape).collect(),
                 led,
             };
-            Ok((frame, of_frame))
+            Ok(of_frame)
         };
-        let mut frames = BTreeMap::new();
-        for group in needed.chunks(rayon::current_num_threads().max(1)) {
-            let read: Vec<_> = group.par_iter().map(|frame| of_frame(*frame)).collect();
-            for read in read {
-                frames.extend([read?]);
-            }
-            progress.set(frames.len() as f32 / needed.len() as f32);
-        }
-        let middle = |handle: usize| {
-            frames
-                .values()
-                .map(move |frame: &OfFrame| frame.places[handle].centre())
-        };
-        let trajectory: Option<Vec<DVec3>> = handles.path.map(|handle| middle(handle).collect());
+        let read = side_by_side(needed, of_frame, watch)?;
+        let frames: BTreeMap<usize, OfFrame> = needed.iter().copied().zip(read).collect();
+        let trajectory: Option<Vec<DVec3>> = frames.values().map(|frame| frame.middle).collect();
         let body = trajectory.map_or_else(Vec::new, |trajectory| edit.body_motions(&trajectory));
         Ok(Self {
             rest: places(rest),
@@ -124,7 +121,7 @@ impl Followed {
     }
 
     /// The footprints and the motions of the body. All frames were read if there are footprints.
-    pub fn footprints(self, entries: &[(usize, &FootprintEntry)]) -> (Vec<Footprints>, Vec<BodyMotion>) {
+    pub fn footprints(self, entries: &[(usize, &FootprintEntry)]) -> (Vec<Held>, Vec<BodyMotion>) {
         let mut shapes: Vec<Vec<Vec<DVec3>>> = vec![Vec::new(); entries.len()];
         for of_frame in self.frames.into_values() {
             for (shapes, shape) in shapes.iter_mut().zip(of_frame.shapes) {
@@ -132,7 +129,10 @@ impl Followed {
             }
         }
         let pairs = entries.iter().zip(&shapes);
-        let footprints = pairs.map(|((handle, entry), shapes)| Footprints::of(*handle, entry, shapes, &self.body));
+        let footprints = pairs.map(|((handle, entry), shapes)| Held {
+            handle: *handle,
+            footprints: Footprints::of(&entry.footprints(), shapes, &self.body),
+        });
         (footprints.collect(), self.body)
     }
 }

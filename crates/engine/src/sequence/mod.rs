@@ -8,14 +8,15 @@ mod bend;
 mod cache;
 mod folder;
 mod followed;
-mod footprints;
 mod frame;
+mod held;
 mod kind;
 mod leading;
 mod morphs;
 mod open;
 mod report;
 mod run;
+mod side_by_side;
 mod source;
 
 use std::collections::BTreeSet;
@@ -91,7 +92,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let ways = Handles {
         vertices: &handles,
         footprints: &footprints,
-        path: edit.handle_of_path().map_err(in_edit)?,
+        path: edit.part_of_path().map_err(in_edit)?,
         led: &led,
     };
     let sources = (&source, other.as_ref());
@@ -121,7 +122,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
         method: setup.method.name().to_owned(),
         vertices: rest.file_vertex_count,
         frames: source.count(),
-        footprints: footprints.iter().map(|own| own.count).sum(),
+        footprints: footprints.iter().map(|own| own.footprints.count).sum(),
         ..SequenceReport::default()
     };
     report.warn(first.scene.notes().iter().cloned().chain(note));

@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_editor::{FollowedFrame, Following, middle_of};
 use pliant_io::Format;
 use pliant_mesh::Drawn;
 
+use super::bend::place;
 use super::cache::Cache;
 use super::folder::Folder;
 use super::morphs::Morphs;
+use super::side_by_side::side_by_side;
 use super::source::{Source, cache_format};
 use crate::EngineError;
 use crate::files::is_same;
@@ -131,6 +134,31 @@ impl OpenSequence {
     /// A sentence for a person: a number that is missing among the frames' names, or the choice among animations.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
+    }
+
+    /// Follows the body and some handles through all frames: reads each, and keeps none.
+    ///
+    /// # Errors
+    /// A frame that can't be read, or that has other vertices or faces; [`EngineError::Interrupted`].
+    pub fn followed(&self, following: &Following, watch: &Watch) -> Result<Vec<FollowedFrame>, EngineError> {
+        let frames: Vec<usize> = (0..self.count()).collect();
+        let of_frame = |frame: usize| {
+            let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
+            let first = &self.mesh.model.surface.positions;
+            let handles = following.handles.iter();
+            let shape = |number: &usize| -> Vec<DVec3> {
+                let (_, vertices) = &following.handles[*number];
+                vertices.iter().map(|vertex| positions[vertex.index()]).collect()
+            };
+            Ok(FollowedFrame {
+                middle: middle_of(&positions),
+                places: handles
+                    .map(|(_, vertices)| place(vertices, first, &positions))
+                    .collect(),
+                shapes: following.shaped.iter().map(shape).collect(),
+            })
+        };
+        side_by_side(&frames, of_frame, watch)
     }
 
     /// Reads a frame below [`count`](Self::count): the displacement of each surface vertex from its place in the mesh's

@@ -156,6 +156,23 @@ fn a_bent_path_carries_the_whole_body_upright_and_keys_act_on_it() {
     for (both, keyed) in own("both").iter().zip(own("keyed")) {
         assert!((both - keyed).abs() < 1e-5, "{both} {keyed}");
     }
+    // Without a handle's name the path is that of the whole body, which needs no handle at all.
+    let mut whole = bent.clone();
+    whole["path"].as_object_mut().unwrap().remove("handle");
+    whole["handles"] = json!([]);
+    whole["keys"] = json!([]);
+    take.edited(&whole, "whole", &[]).done();
+    for (frame, way) in [
+        (0, DVec3::ZERO),
+        (4, DVec3::new(0.0, 0.4, 0.0)),
+        (8, DVec3::new(0.0, 1.5, 0.2)),
+    ] {
+        let middle = |folder: &str| {
+            let shape = take.shape(folder, frame);
+            shape.iter().sum::<DVec3>() / shape.len() as f64
+        };
+        assert!((middle("whole") - middle("in")).distance(way) < 1e-6, "{frame}");
+    }
     // A foot that rests on its own way rests on the bent one, too.
     let hop = Take::of(|frame| {
         let way = [0.0, 0.01, 0.02, 0.5, 1.0, 1.5, 1.5, 1.51, 1.52][frame];

@@ -258,7 +258,7 @@ impl Application {
             axis_ball::readout(ui.painter(), at, shows);
         }
         drop_target(ui, rect);
-        if let Some(command) = axis_ball::show(ui, rect, shown.camera) {
+        if let Some(command) = axis_ball::show(ui, rect, shown.world_camera) {
             self.command(command);
             ui.ctx().request_repaint();
         }

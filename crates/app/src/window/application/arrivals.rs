@@ -62,6 +62,11 @@ impl Application {
                         self.editor.handle(Event::Frame(frame, shape));
                     }
                 }
+                Message::Followed(stamp, following, frames) => {
+                    if let Some(frames) = self.session.take_followed(stamp, frames) {
+                        self.editor.handle(Event::Followed(following, frames));
+                    }
+                }
                 Message::Stitched(stamp, result) => self.take_stitched(stamp, result),
                 Message::Written(stamp, result) => self.written(stamp, result),
                 Message::OriginalFound(path, kept) => {

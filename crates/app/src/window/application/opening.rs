@@ -53,8 +53,12 @@ impl Application {
         self.session.load(source, &self.viewport.gpu(), &self.workers);
     }
 
-    /// Gives the editor the frame of the sequence that it asks for, once it was read.
+    /// Gives the editor the frame of the sequence that it asks for, once it was read, and reads all frames if it must
+    /// know the way of the body.
     pub(super) fn follow_frames(&mut self, context: &egui::Context) {
+        if self.editor.view().wants_following && !self.session.is_following() {
+            self.session.follow(self.editor.following(), &self.workers);
+        }
         let wanted = self.editor.view().wanted_frame;
         if let Some(frame) = wanted
             && let Some(shape) = self.session.frame(frame, &self.workers)

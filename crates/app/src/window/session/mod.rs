@@ -1,5 +1,6 @@
 //! The open file, and the jobs that load and save it.
 
+mod following;
 mod frames;
 mod open_file;
 pub(in crate::window) mod opening;
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{JobQueue, Revision, SaveMark, StitchRequest};
+use pliant_editor::{FollowedFrame, Following, JobQueue, Revision, SaveMark, StitchRequest};
 
 use crate::files::original::Original;
 use crate::window::files::in_file::InFile;
@@ -19,6 +20,7 @@ use crate::window::files::rest_mesh::RestMesh;
 pub use crate::window::files::save_request::KeepOriginal;
 use crate::window::files::save_request::{Changed, Content, SaveRequest, Unwritten, Written, WrittenKind};
 use crate::window::files::writing::write;
+use crate::window::session::following::FrameSearch;
 use crate::window::session::frames::FrameReads;
 pub use crate::window::session::frames::meant_by;
 pub use crate::window::session::open_file::OpenFile;
@@ -56,6 +58,8 @@ pub struct Session {
     pub to_append: Option<PathBuf>,
     /// The frames of the open sequence.
     frames: FrameReads,
+    /// The body of the open sequence.
+    following: FrameSearch,
     /// The running change of the mesh.
     stitching: Option<(Revision, Watch)>,
 }
@@ -114,9 +118,31 @@ impl Session {
         self.frames.take(stamp, frame, shape)
     }
 
-    /// Cancels the running work: a change of the mesh, a load, or a save before it has changed anything on the disk.
+    /// Follows the body and some handles of the open sequence through all frames, off the window's thread.
+    pub fn follow(&mut self, following: Following, workers: &Workers) {
+        if let Some(sequence) = self.open.as_ref().and_then(|open| open.sequence.as_ref()) {
+            self.following.request(following, sequence, workers);
+        }
+    }
+
+    /// Returns true while the body is being followed.
+    pub fn is_following(&self) -> bool {
+        self.following.doing().is_some()
+    }
+
+    /// Takes all frames of a sequence. Returns them if they belong to the open one.
+    pub fn take_followed(
+        &mut self,
+        stamp: Revision,
+        frames: Result<Vec<FollowedFrame>, String>,
+    ) -> Option<Result<Vec<FollowedFrame>, String>> {
+        self.following.take(stamp, frames)
+    }
+
+    /// Cancels the running work: a change of the mesh, a load, a search through all frames, or a save before it has changed anything on the disk.
     pub fn stop(&mut self) {
         self.stop_stitching();
+        self.following.stop();
         self.loading.cancel();
         self.saving.cancel();
         self.to_save.clear();
@@ -154,6 +180,7 @@ impl Session {
         self.stop_stitching();
         self.stitching = None;
         self.frames.forget();
+        self.following.forget();
         for (path, stamp) in opened.loaded.stamps() {
             self.known.note(path, stamp.clone());
         }
@@ -269,7 +296,7 @@ impl Session {
         let stage = || self.save_watch.as_ref().and_then(Watch::now);
         let saving = self.saving.running();
         let saving = saving.map(|running| stage().unwrap_or(("saving", running.progress.get())));
-        loading.or(stitching).or(saving)
+        loading.or(stitching).or(saving).or(self.following.doing())
     }
 
     fn stamp(&mut self) -> Revision {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::ExampleShape;
-use pliant_editor::{Beginning, JobDone, NewMesh, Revision, SavedAs, SnapshotKey};
+use pliant_editor::{Beginning, FollowedFrame, Following, JobDone, NewMesh, Revision, SavedAs, SnapshotKey};
 use pliant_mesh::Cancel;
 use pliant_render::{Image, Materials, Surface};
 
@@ -35,6 +35,8 @@ pub enum Message {
     /// A frame of the open sequence was read: the displacements of its surface vertices from the file's shape, or the
     /// reason why not.
     Frame(Revision, usize, Result<Arc<Vec<DVec3>>, String>),
+    /// The open sequence was followed through all frames, or the reason why not.
+    Followed(Revision, Following, Result<Vec<FollowedFrame>, String>),
     /// The open file's triangles were changed, or the reason why not.
     Stitched(Revision, Result<Box<Stitched>, Refusal>),
     /// A file was written, or the reason why not.

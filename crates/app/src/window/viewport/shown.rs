@@ -207,13 +207,28 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// The grid.
+    /// The grid, which stays in the world: the view is that of the shown frame, which its path may have carried there.
     pub fn grid(&self, view: &SceneView<'_>) -> Grid {
         let height = match view.camera.up {
             UpAxis::Y => self.lowest.y,
             UpAxis::Z => self.lowest.z,
         };
-        drawing::ground(view.camera, view.viewport_px, height, self.centre)
+        let grid = drawing::ground(view.world_camera, view.viewport_px, height, self.centre);
+        let body = &view.body_motion;
+        if !body.moves() {
+            return grid;
+        }
+        let seen = |world: DVec3| body.before(world) - self.centre;
+        let middle = DVec3::from(grid.middle.map(f64::from)) + self.centre;
+        let along = grid.along.map(|direction| {
+            let ahead = seen(middle + DVec3::from(direction.map(f64::from)));
+            (ahead - seen(middle)).as_vec3().to_array()
+        });
+        Grid {
+            middle: seen(middle).as_vec3().to_array(),
+            along,
+            ..grid
+        }
     }
 }
 

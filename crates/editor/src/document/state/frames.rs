@@ -27,12 +27,13 @@ impl Document {
         let targets = self.versions().of(Aspect::Targets);
         self.change_handles(|handles| {
             for handle in handles {
-                let (pivot, transform) = places
-                    .get(&handle.id)
-                    .copied()
-                    .unwrap_or((handle.pivot, HandleTransform::IDENTITY));
-                handle.pivot = pivot;
-                handle.put(transform);
+                let Some(place) = places.get(&handle.id) else {
+                    handle.put(HandleTransform::IDENTITY);
+                    continue;
+                };
+                handle.pivot = place.pivot;
+                handle.put(place.transform);
+                handle.held.clone_from(&place.held);
             }
         });
         let is_moved = is_other || self.versions().of(Aspect::Targets) != targets;

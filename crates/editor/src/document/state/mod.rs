@@ -424,7 +424,9 @@ impl Document {
         {
             changed.push(Aspect::Constraints);
         }
-        if !are_same(before, after, |h| (h.affine(), h.line.clone(), h.freedom())) {
+        if !are_same(before, after, |h| {
+            (h.affine(), h.line.clone(), h.freedom(), h.held.clone())
+        }) {
             changed.push(Aspect::Targets);
         }
         if !are_same(before, after, |h| (h.id, h.colour, h.visible, h.is_pin)) {

@@ -8,6 +8,9 @@ use super::place::{StoredPlace, places, stored_places};
 use crate::document::{Animation, HandleCurve, HandleId, KeyFrame};
 use crate::ease::Ease;
 use crate::format::edit_error::EditError;
+use crate::format::filters::{FilterEntry, check_filters};
+use crate::format::footprints::{FootprintEntry, check_footprints};
+use crate::format::path::PathEntry;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,6 +22,15 @@ pub(super) struct StoredAnimation {
     time: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     keys: Vec<StoredKey>,
+    /// The bent path of the body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    path: Option<PathEntry>,
+    /// The filters of handles' ways; each names its handle by its number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    filter: Vec<FilterEntry>,
+    /// The footprints of handles; each names its handle by its number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    footprints: Vec<FootprintEntry>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -63,13 +75,24 @@ impl StoredAnimation {
             fps: animation.fps(),
             time: animation.time(),
             keys: animation.keys().iter().map(key).collect(),
+            path: animation.path().map(|path| PathEntry::of(path)),
+            filter: animation
+                .filters()
+                .iter()
+                .map(|(id, filter)| FilterEntry::of(&id.0.to_string(), filter))
+                .collect(),
+            footprints: animation
+                .footprints()
+                .iter()
+                .map(|(id, footprints)| FootprintEntry::of(&id.0.to_string(), footprints))
+                .collect(),
         })
     }
 
     /// The same, read.
     ///
     /// # Errors
-    /// A time or a number of frames a second outside its range.
+    /// A time or a number of frames a second outside its range; a path that an edit can't have.
     pub(super) fn animation(&self) -> Result<Animation, EditError> {
         let refuse = |place: String, found: f64, allowed: String| {
             Err(EditError::OutOfRange {
@@ -106,6 +129,23 @@ impl StoredAnimation {
                 .collect(),
             weights: key.weights.clone(),
         };
-        Ok(Animation::of(self.keys.iter().map(key), self.time, self.fps))
+        if let Some(path) = &self.path {
+            path.check_of_document().map_err(|error| error.under("animation"))?;
+        }
+        let animation = Animation::of(self.keys.iter().map(key), self.time, self.fps);
+        let mut animation = animation.with_path(self.path.as_ref().and_then(PathEntry::path));
+        check_filters(&self.filter).map_err(|error| error.under("animation"))?;
+        for filter in &self.filter {
+            if let Ok(handle) = filter.handle.parse() {
+                animation = animation.with_filter(HandleId(handle), Some(filter.filter()));
+            }
+        }
+        check_footprints(&self.footprints).map_err(|error| error.under("animation"))?;
+        for footprint in &self.footprints {
+            if let Ok(handle) = footprint.handle.parse() {
+                animation = animation.with_footprints(HandleId(handle), Some(footprint.footprints()));
+            }
+        }
+        Ok(animation)
     }
 }

@@ -1,10 +1,12 @@
 //! The timeline under the view: play and the shown moment, a ruler, and the keys of the handles in rows.
 
+mod path_row;
 mod rows;
 mod ruler;
 mod scale;
 mod spans;
 mod transport;
+mod way_line;
 
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, Panel, Rangef, Rect, ScrollArea, Stroke, vec2};
@@ -44,6 +46,11 @@ fn contents(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         .auto_shrink([false, true])
         .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
         .show(ui, |ui| transport::show(ui, editor, commands));
+    ScrollArea::horizontal()
+        .id_salt("way of the timeline")
+        .auto_shrink([false, true])
+        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
+        .show(ui, |ui| way_line::show(ui, editor, commands));
     let animation = editor.document().animation();
     let size = vec2(ui.available_width(), ruler::HEIGHT);
     let (line, _) = ui.allocate_exact_size(size, egui::Sense::hover());

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, vec2};
 use pliant_editor::{Command, Ease, Editor, Handle, KeyFrame, KeyId};
 
+use super::path_row;
 use super::scale::TimeScale;
 use super::spans;
 use crate::window::widgets::command_button::command_button;
@@ -20,7 +21,8 @@ const MARK: f32 = 5.0;
 /// Shows the rows; names are at the left of the scale.
 pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mut Outbox) {
     let handles: Vec<&Handle> = editor.view().handles.iter().filter(|handle| !handle.is_pin).collect();
-    let rows = 1 + handles.len();
+    let has_path = path_row::is_shown(editor);
+    let rows = 1 + handles.len() + usize::from(has_path);
     let size = vec2(ui.available_width(), HEIGHT * rows as f32);
     let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
     let canvas = whole.with_min_x(scale.x.min);
@@ -31,9 +33,17 @@ pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mu
         Sense::click_and_drag(),
     );
     let mut marks = Vec::new();
-    for (row, handle) in std::iter::once(None).chain(handles.into_iter().map(Some)).enumerate() {
+    let rect_of = |row: usize| {
         let top = whole.top() + HEIGHT * row as f32;
-        let rect = Rect::from_min_size(egui::pos2(whole.left(), top), vec2(whole.width(), HEIGHT));
+        Rect::from_min_size(egui::pos2(whole.left(), top), vec2(whole.width(), HEIGHT))
+    };
+    if has_path {
+        let rect = rect_of(rows - 1);
+        stripe(ui, rect.with_min_x(scale.x.min), rows - 1);
+        path_row::show(ui, rect, scale, editor, commands);
+    }
+    for (row, handle) in std::iter::once(None).chain(handles.into_iter().map(Some)).enumerate() {
+        let rect = rect_of(row);
         stripe(ui, rect.with_min_x(scale.x.min), row);
         name(ui, rect.with_max_x(scale.x.min - 4.0), handle, editor, commands);
         if let Some(handle) = handle {

@@ -36,7 +36,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
         moment(ui, editor, commands);
         ui.separator();
-        skins(ui, editor, commands);
+        // A sequence has no onion skins, and a single shape no path.
+        match editor.document().animation().frames() {
+            Some(_) => path(ui, editor, commands),
+            None => skins(ui, editor, commands),
+        }
         ui.separator();
         selected(ui, editor, commands);
     });
@@ -67,6 +71,15 @@ fn moment(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     });
     let field = field.on_hover_text("Sets the number of frames a second. Keys keep their times.");
     commands.adjust(&field, || Command::SetFps(rate));
+}
+
+/// The switch of the body's path.
+fn path(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let is_shown = editor.view().look.path;
+    let command = Command::TogglePath;
+    if icon_choice(ui, editor, &command, is_shown, Glyph::Spline, Some("Path")) {
+        commands.push(command);
+    }
 }
 
 /// The switch of the ghosts, and their settings.

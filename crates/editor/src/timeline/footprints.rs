@@ -3,19 +3,24 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use pliant_editor::{BodyMotion, FootprintEntry, GroundAxis};
+
+use super::middle::middle_of;
+use super::path::BodyMotion;
+use crate::document::HandleFootprints;
 
 /// The places of a handle's vertices in the frames of its footprints and around them, and the number of footprints.
-pub(super) struct Footprints {
-    pub handle: usize,
+#[derive(Clone, Debug)]
+pub struct Footprints {
+    /// By frame, in the order of the vertices, in world space.
     pub places: BTreeMap<usize, Vec<DVec3>>,
+    /// The number of footprints.
     pub count: usize,
 }
 
 impl Footprints {
     /// Finds the footprints of a handle. `shapes` has the positions of its vertices in every frame. If the `body` has
     /// motions, these carry every frame afterwards, and the handle rests then.
-    pub fn of(handle: usize, entry: &FootprintEntry, shapes: &[Vec<DVec3>], body: &[BodyMotion]) -> Self {
+    pub fn of(entry: &HandleFootprints, shapes: &[Vec<DVec3>], body: &[BodyMotion]) -> Self {
         let runs = runs(entry, shapes);
         // A shape in one frame that the body's motion brings to the place of another frame's shape.
         let brought = |from: usize, to: usize| -> Vec<DVec3> {
@@ -57,7 +62,6 @@ impl Footprints {
             }
         }
         Self {
-            handle,
             places,
             count: runs.len(),
         }
@@ -66,22 +70,19 @@ impl Footprints {
 
 /// The first and the last frame of each footprint: at least two frames, in which the handle is low and its middle nearly
 /// rests from each to the next.
-fn runs(entry: &FootprintEntry, shapes: &[Vec<DVec3>]) -> Vec<(usize, usize)> {
-    let height = |position: &DVec3| match entry.up {
-        GroundAxis::Y => position.y,
-        GroundAxis::Z => position.z,
-    };
+fn runs(entry: &HandleFootprints, shapes: &[Vec<DVec3>]) -> Vec<(usize, usize)> {
+    let up = entry.up.direction();
+    let height = |position: &DVec3| position.dot(up);
     let lowest: Vec<f64> = shapes
         .iter()
         .map(|shape| shape.iter().map(height).fold(f64::INFINITY, f64::min))
         .collect();
     let ground = lowest.iter().copied().fold(f64::INFINITY, f64::min);
-    let middle = |shape: &[DVec3]| shape[0] + shape.iter().map(|p| *p - shape[0]).sum::<DVec3>() / shape.len() as f64;
     let rests = |frame: usize| {
         let are_low = [frame, frame + 1]
             .iter()
             .all(|frame| lowest[*frame] <= ground + entry.height);
-        are_low && middle(&shapes[frame]).distance(middle(&shapes[frame + 1])) <= entry.speed
+        are_low && middle_of(&shapes[frame]).distance(middle_of(&shapes[frame + 1])) <= entry.speed
     };
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for frame in (0..shapes.len().saturating_sub(1)).filter(|frame| rests(*frame)) {
@@ -96,6 +97,7 @@ fn runs(entry: &FootprintEntry, shapes: &[Vec<DVec3>]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ground_axis::GroundAxis;
 
     #[test]
     fn a_foot_is_held_where_it_is_low_and_slow_and_fades_between() {
@@ -106,14 +108,13 @@ mod tests {
             _ => DVec3::new(2.0 + 0.01 * frame as f64, 0.001, 0.0),
         };
         let shapes: Vec<Vec<DVec3>> = (0..14).map(|frame| vec![at(frame), at(frame) + DVec3::Y]).collect();
-        let entry = FootprintEntry {
-            handle: String::new(),
+        let entry = HandleFootprints {
             up: GroundAxis::Y,
             height: 0.01,
             speed: 0.02,
             fade: 9,
         };
-        let found = Footprints::of(0, &entry, &shapes, &[]);
+        let found = Footprints::of(&entry, &shapes, &[]);
         assert_eq!(found.count, 2);
         for (run, middle) in [(0..=3, 1), (10..=13, 11)] {
             assert!(
@@ -125,7 +126,7 @@ mod tests {
         let off = |frame: usize| found.places[&frame][0].distance(shapes[frame][0]);
         assert!(off(4) > off(5) && off(5) > off(6) && off(6) > 0.0);
         assert!(off(9) > off(8) && off(8) > off(7) && off(7) > 0.0);
-        let never = FootprintEntry { speed: 1e-9, ..entry };
-        assert!(Footprints::of(0, &never, &shapes, &[]).places.is_empty());
+        let never = HandleFootprints { speed: 1e-9, ..entry };
+        assert!(Footprints::of(&never, &shapes, &[]).places.is_empty());
     }
 }

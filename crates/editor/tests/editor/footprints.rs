@@ -1,0 +1,179 @@
+//! Laws of footprints of handles of a sequence: a held handle rests to the bit of its footprint's middle frame, on a bent
+//! path, too; nothing else moves it, changes are steps, and edits and projects have them.
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+
+use glam::DVec3;
+use pliant_editor::{
+    Beginning, Command, Event, FilterKind, FollowedFrame, GroundAxis, HandleFilter, HandleFootprints, HandleId,
+    HandlePlace, middle_of,
+};
+use pliant_mesh::{SurfaceVertex, shapes};
+
+use crate::project::{reopened, saved};
+use crate::rig::Rig;
+use crate::sequences::{COUNT, deliver, frame, go_to, open};
+
+/// All frames are one footprint.
+const ALL: HandleFootprints = HandleFootprints {
+    up: GroundAxis::Y,
+    height: 10.0,
+    speed: 10.0,
+    fade: 4,
+};
+
+/// Its middle frame.
+const MIDDLE: usize = (COUNT - 1) / 2;
+
+fn shape(rig: &Rig, number: usize) -> Vec<DVec3> {
+    let file = rig.model.surface.positions.iter();
+    file.zip(&**frame(rig, number))
+        .map(|(place, way)| *place + *way)
+        .collect()
+}
+
+/// Follows the handles through the sequence, and reads the frames that are wanted then.
+fn follow(rig: &mut Rig) {
+    assert!(rig.editor.view().wants_following);
+    let following = rig.editor.following();
+    let file = rig.model.surface.positions.clone();
+    let at = |vertices: &[SurfaceVertex], positions: &[DVec3]| -> Vec<DVec3> {
+        vertices.iter().map(|vertex| positions[vertex.index()]).collect()
+    };
+    let of_frame = |number: usize| {
+        let shape = shape(rig, number);
+        let handles = following.handles.iter();
+        let places = handles.map(|(_, vertices)| HandlePlace::of(&at(vertices, &file), &at(vertices, &shape)));
+        FollowedFrame {
+            middle: middle_of(&shape),
+            places: places.collect(),
+            shapes: following
+                .shaped
+                .iter()
+                .map(|number| at(&following.handles[*number].1, &shape))
+                .collect(),
+        }
+    };
+    let frames = (0..COUNT).map(of_frame).collect();
+    rig.send(Event::Followed(following, Ok(frames)));
+    deliver(rig);
+    assert!(!rig.editor.view().wants_following);
+}
+
+fn held() -> (Rig, HandleId) {
+    let mut rig = open(shapes::icosphere(2));
+    rig.choose("bilaplacian");
+    rig.paint_handle();
+    rig.drain();
+    let id = rig.editor.document().handles()[0].id;
+    rig.command(Command::SetFootprints(id, Some(ALL)));
+    follow(&mut rig);
+    (rig, id)
+}
+
+/// The largest distance of the shown handle from its places in the middle frame, both carried along the path.
+fn away(rig: &Rig, number: usize) -> f64 {
+    let path = rig.editor.document().animation().path().cloned();
+    let (here, there) = match path {
+        None => (rig.editor.view().body_motion, None),
+        Some(_) => {
+            let text = rig.editor.edit_file().unwrap().to_json();
+            let Beginning::Edit(edit) = Beginning::parse(&text).unwrap() else {
+                panic!("{text}");
+            };
+            let trajectory: Vec<DVec3> = (0..COUNT).map(|number| middle_of(&shape(rig, number))).collect();
+            let motions = edit.body_motions(&trajectory);
+            (motions[number], Some(motions[MIDDLE]))
+        }
+    };
+    let (middle, file) = (shape(rig, MIDDLE), &rig.model.surface.positions);
+    let shown = rig.editor.document().from_file();
+    let vertices = &rig.editor.following().handles[0].1;
+    let distance = |vertex: &SurfaceVertex| {
+        let v = vertex.index();
+        let (meant, found) = (middle[v], file[v] + shown[v]);
+        there
+            .map_or(meant, |there| there.moved(meant))
+            .distance(here.moved(found))
+    };
+    vertices.iter().map(distance).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_held_handle_rests_in_all_frames_on_a_bent_path_too() {
+    let (mut rig, id) = held();
+    assert_eq!(rig.editor.footprints_of(id), Some(1));
+    for number in [0, 5, MIDDLE, 30, COUNT - 1] {
+        go_to(&mut rig, number);
+        assert!(rig.editor.document().is_settled());
+        assert!(away(&rig, number) < 1e-9, "{number}: {}", away(&rig, number));
+        let own = shape(&rig, number);
+        let far = rig
+            .editor
+            .document()
+            .from_file()
+            .iter()
+            .zip(&own)
+            .zip(&rig.model.surface.positions);
+        let bent = far
+            .map(|((way, own), file)| (*file + *way).distance(*own))
+            .fold(0.0, f64::max);
+        assert_eq!(bent > 1e-3, number != MIDDLE, "{number}: {bent}");
+    }
+    rig.command(Command::BendPath(20, DVec3::new(0.3, 0.0, 0.5)));
+    deliver(&mut rig);
+    for number in [3, 25, COUNT - 1] {
+        go_to(&mut rig, number);
+        assert!(away(&rig, number) < 1e-9, "{number}: {}", away(&rig, number));
+    }
+}
+
+#[test]
+fn nothing_else_moves_a_held_handle_and_edits_and_projects_have_its_footprints() {
+    let (mut rig, id) = held();
+    go_to(&mut rig, 5);
+    let shown = rig.editor.document().from_file().clone();
+    rig.command(Command::KeyHere);
+    deliver(&mut rig);
+    assert!(rig.editor.document().animation().keys().is_empty());
+    let filter = HandleFilter {
+        span: [0, 9],
+        kind: FilterKind::Smooth,
+        width: 2.0,
+        amount: 1.0,
+    };
+    assert!(
+        rig.editor
+            .unavailable_because(&Command::SetFilter(id, Some(filter)))
+            .is_some()
+    );
+    let text = rig.editor.edit_file().unwrap().to_json();
+    let Beginning::Edit(edit) = Beginning::parse(&text).unwrap() else {
+        panic!("{text}");
+    };
+    assert_eq!(edit.footprints_of_handles().unwrap()[0].1.footprints(), ALL);
+    let never = HandleFootprints { speed: 1e-9, ..ALL };
+    rig.command(Command::SetFootprints(id, Some(never)));
+    deliver(&mut rig);
+    assert_eq!(rig.editor.footprints_of(id), Some(0));
+    assert_eq!(**rig.editor.document().from_file(), *frame(&rig, 5));
+    rig.undo();
+    rig.drain();
+    assert_eq!(*rig.editor.document().from_file(), shown);
+    let mut again = reopened(&rig, &saved(&rig));
+    again.send(Event::OpenedSequence {
+        count: COUNT,
+        shown: None,
+    });
+    deliver(&mut again);
+    follow(&mut again);
+    assert_eq!(again.editor.document().animation(), rig.editor.document().animation());
+    assert!(away(&again, 5) < 1e-9);
+    rig.command(Command::SetFootprints(id, None));
+    rig.command(Command::KeyHere);
+    deliver(&mut rig);
+    assert!(
+        rig.editor
+            .unavailable_because(&Command::SetFootprints(id, Some(ALL)))
+            .is_some()
+    );
+}
