@@ -14,7 +14,7 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
-use crate::document::{HandleCurve, HandleLine};
+use crate::document::{HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
 use crate::jobs::Activity;
@@ -42,8 +42,8 @@ pub(crate) struct CurveStroke {
 #[derive(Debug)]
 struct Drawn {
     curve: HandleCurve,
-    /// The length within which the surface beside what follows the curve follows that.
-    reach: f64,
+    /// The reach of what follows the curve.
+    reach: Reach,
 }
 
 /// What follows a curve.
@@ -95,11 +95,11 @@ impl CurveStroke {
         let curve = HandleCurve::at_rest_through(points, is_closed).ok()?;
         if self.shape == StrokeShape::Spine {
             let seen = samples.iter().map(|sample| sample.pick.vertex).collect();
-            let reach = SPINE_REACH * half;
+            let reach = Reach::Bounded(SPINE_REACH * half);
             return Some((Drawn { curve, reach }, Around::Limb(half, seen)));
         }
         let under = under(curve.rest(), &samples, &picking);
-        let reach = CURVE_REACH * curve.rest().length();
+        let reach = Reach::Length(CURVE_REACH * curve.rest().length());
         (!under.is_empty()).then_some((Drawn { curve, reach }, Around::Under(under)))
     }
 

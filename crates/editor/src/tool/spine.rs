@@ -4,7 +4,7 @@
 //! find the limb's walls, in depth and beside the stroke, and the sample moves half way between them.
 
 use glam::DVec3;
-use pliant_mesh::{Curve, Model, SurfaceVertex};
+use pliant_mesh::{Curve, Model, SurfaceVertex, face_normal};
 
 use crate::view::{Pick, Picking, Ray};
 
@@ -133,8 +133,8 @@ fn between_walls(samples: &mut [Sample], directions: &[DVec3], picking: &Picking
     0.5 * usual
 }
 
-/// The vertices near a curve inside a limb of this half thickness that are connected with the `seen` ones, on the model's
-/// surface after these displacements.
+/// The vertices near a curve inside a limb of this half thickness that are connected with the `seen` ones and face away
+/// from the curve, on the model's surface after these displacements. The skin of a limb beside it faces the curve.
 pub(super) fn around(
     curve: &Curve,
     half: f64,
@@ -146,15 +146,27 @@ pub(super) fn around(
     let limit = GIRTH * half;
     let at = |span: usize| curve.position(curve.length() * span as f64 / SPANS as f64);
     let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
-    let is_near = |vertex: SurfaceVertex| {
-        let point = model.surface.positions[vertex.index()] + displacements[vertex.index()];
-        line.windows(2).any(|ends| distance_to(point, ends) <= limit)
+    let position = |vertex: SurfaceVertex| model.surface.positions[vertex.index()] + displacements[vertex.index()];
+    let from_curve = |vertex: SurfaceVertex| {
+        let ways = line.windows(2).map(|ends| way_from(position(vertex), ends));
+        ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
     };
-    let mut is_seen = vec![false; model.surface.positions.len()];
+    let normal = |vertex: SurfaceVertex| -> DVec3 {
+        let corners = |face: u32| model.surface.triangles[face as usize].map(position);
+        let faces = model.topology.faces(vertex, &model.surface.triangles);
+        faces.map(|face| face_normal(corners(face))).sum()
+    };
+    let facing = |vertex: SurfaceVertex| from_curve(vertex).map_or(0.0, |way| normal(vertex).dot(way));
+    // Where the surface is inside out, the skin's normals are turned, too.
+    let outward = seen.iter().map(|&vertex| facing(vertex)).sum::<f64>().signum();
+    let is_own = |vertex: SurfaceVertex| {
+        from_curve(vertex).is_some_and(|way| way.length() <= limit && outward * normal(vertex).dot(way) >= 0.0)
+    };
+    let mut is_met = vec![false; model.surface.positions.len()];
     let mut found: Vec<SurfaceVertex> = Vec::new();
     let mut stack: Vec<SurfaceVertex> = seen.to_vec();
     while let Some(vertex) = stack.pop() {
-        if !std::mem::replace(&mut is_seen[vertex.index()], true) && is_near(vertex) {
+        if !std::mem::replace(&mut is_met[vertex.index()], true) && is_own(vertex) {
             found.push(vertex);
             stack.extend(model.topology.neighbours(vertex));
         }
@@ -163,9 +175,9 @@ pub(super) fn around(
     found
 }
 
-/// The distance of a point from a segment.
-fn distance_to(point: DVec3, ends: &[DVec3]) -> f64 {
+/// The way to a point from the nearest point of a segment.
+fn way_from(point: DVec3, ends: &[DVec3]) -> DVec3 {
     let (from, along) = (ends[0], ends[1] - ends[0]);
     let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-    point.distance(from + along * share.clamp(0.0, 1.0))
+    point - (from + along * share.clamp(0.0, 1.0))
 }
