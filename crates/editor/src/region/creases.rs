@@ -55,17 +55,17 @@ impl CreaseSearch {
     }
 
     /// The same, where ways also count as longer beyond the end of the limb that the handle is on, and none leads to a
-    /// limb beside it.
+    /// limb beside it. `scale` is that of the limb, in world units, as a handle's radius is.
     pub(super) fn within_limb(
         &mut self,
         surface: &Surface,
         topology: &Topology,
         members: &[(SurfaceVertex, f64)],
-        radius: f64,
+        [radius, scale]: [f64; 2],
         most: f64,
     ) -> &[(SurfaceVertex, f64)] {
         self.search_plain(surface, topology, members, most);
-        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, radius) {
+        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, scale) {
             self.stretch.resize(surface.positions.len(), 1.0);
             for (vertex, times) in beyond {
                 self.stretch[vertex.index()] = times;

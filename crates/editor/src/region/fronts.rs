@@ -17,8 +17,8 @@ pub(super) struct Way {
     pub(super) end: Vec<SurfaceVertex>,
     /// Its area with everything beyond it, in square world units.
     pub(super) area: f64,
-    /// The number of its side.
-    side: usize,
+    /// The last of the pieces that it met before the front closed.
+    group: u32,
 }
 
 /// The ways on from a handle.
@@ -26,17 +26,22 @@ pub(super) struct Way {
 pub(super) struct Ways {
     /// All of them, by falling distance of their ends.
     pub(super) all: Vec<Way>,
-    /// True if they fall into two sides, as on a limb, whose front closes behind the handle.
+    /// True if they are in several groups, as on a limb, whose front closes behind the handle.
     has_sides: bool,
 }
 
 impl Ways {
-    /// The ways on the side with less area and those on the other one, if there are two sides.
+    /// The ways on the sides of the tip and of the body, which is the group with the largest area, if there are several
+    /// groups: besides the body, the tip and pieces that the handle encloses.
     pub(super) fn sides(&self) -> Option<[Vec<&Way>; 2]> {
-        let on = |side: usize| self.all.iter().filter(move |way| way.side == side);
-        let area = |side: usize| on(side).map(|way| way.area).sum::<f64>();
-        let first = usize::from(area(0) > area(1));
-        self.has_sides.then(|| [on(first).collect(), on(1 - first).collect()])
+        let area = |group: u32| {
+            let own = self.all.iter().filter(|way| way.group == group);
+            own.map(|way| way.area).sum::<f64>()
+        };
+        let groups = self.all.iter().map(|way| way.group);
+        let body = groups.max_by(|&a, &b| area(a).total_cmp(&area(b)))?;
+        let (body, tip) = self.all.iter().partition(|way| way.group == body);
+        self.has_sides.then_some([tip, body])
     }
 }
 
@@ -55,28 +60,36 @@ struct Pieces {
 }
 
 /// The ways on from the vertices `around` a handle, which are given nearest first with their distances. A way is at least
-/// `length` long, and a front that closes behind the handle does so within the distance `back`.
+/// `length` long and has at least this area, and a front that closes behind the handle does so within the distance `back`.
 pub(super) fn ways(
     surface: &Surface,
     topology: &Topology,
     around: &[(SurfaceVertex, f64)],
-    length: f64,
-    back: f64,
+    [length, back]: [f64; 2],
+    least_area: f64,
 ) -> Ways {
     let Pieces { all: pieces, of_vertex } = pieces(topology, around);
-    let is_way = |number: u32| {
-        let piece = &pieces[number as usize];
-        piece.met.is_none_or(|(_, at)| piece.farthest - at >= length)
-    };
     let met = |number: u32| pieces[number as usize].met;
-    // A piece that is too short belongs to the older one that it met, which has a lower number.
+    let mut areas = areas(surface, topology, around, &of_vertex, pieces.len());
+    // A piece that is too short or too small belongs to the older one that it met, which has a lower number.
+    let mut is_way = vec![false; pieces.len()];
+    for number in (0..pieces.len()).rev() {
+        let piece = &pieces[number];
+        let is_long = piece.met.is_none_or(|(_, at)| piece.farthest - at >= length);
+        is_way[number] = is_long && areas[number] >= least_area;
+        if let Some((older, _)) = piece.met.filter(|_| !is_way[number]) {
+            areas[older as usize] += areas[number];
+        }
+    }
     let mut way_of: Vec<u32> = (0..pieces.len() as u32).collect();
     for number in 0..pieces.len() {
-        if let Some((older, _)) = met(number as u32).filter(|_| !is_way(number as u32)) {
+        if let Some((older, _)) = pieces[number].met.filter(|_| !is_way[number]) {
             way_of[number] = way_of[older as usize];
         }
     }
-    let numbers: Vec<u32> = (0..pieces.len() as u32).filter(|&number| is_way(number)).collect();
+    let numbers: Vec<u32> = (0..pieces.len() as u32)
+        .filter(|&number| is_way[number as usize])
+        .collect();
     // The last meeting is where the front closes; around a handle that closes round the limb itself there is none.
     let last = numbers
         .iter()
@@ -84,20 +97,13 @@ pub(super) fn ways(
         .min_by(|(a, at_a), (b, at_b)| at_a.total_cmp(at_b).then(a.cmp(b)));
     let roots = numbers.iter().filter(|&&number| met(number).is_none()).count();
     let closing = last.filter(|_| roots == 1).map(|(number, _)| number);
-    let has_sides = roots == 2 || roots == 1 && last.is_some_and(|(_, at)| at <= back);
-    let side_of = |mut number: u32| loop {
+    let has_sides = roots > 1 || last.is_some_and(|(_, at)| at <= back);
+    let group_of = |mut number: u32| loop {
         match met(number).filter(|_| Some(number) != closing) {
             Some((older, _)) => number = way_of[older as usize],
             None => return number,
         }
     };
-    let areas = areas(
-        surface,
-        topology,
-        around,
-        |v| way_of.get(of_vertex[v.index()] as usize).copied(),
-        pieces.len(),
-    );
     let all = numbers.iter().map(|&number| {
         let Piece { farthest, met } = pieces[number as usize];
         let own = farthest - met.map_or(0.0, |(_, at)| at);
@@ -108,7 +114,7 @@ pub(super) fn ways(
         Way {
             end: around.iter().filter(is_end).map(|(v, _)| *v).collect(),
             area: areas[number as usize],
-            side: usize::from(side_of(number) != numbers[0]),
+            group: group_of(number),
         }
     });
     Ways {
@@ -164,12 +170,12 @@ fn whole_of(whole: &mut [u32], mut piece: u32) -> u32 {
     piece
 }
 
-/// The area of each way, by number, with the surface beyond the search that hangs on it.
+/// The area of each piece, by number, with the surface beyond the search that hangs on it.
 fn areas(
     surface: &Surface,
     topology: &Topology,
     around: &[(SurfaceVertex, f64)],
-    way_of: impl Fn(SurfaceVertex) -> Option<u32>,
+    of_vertex: &[u32],
     count: usize,
 ) -> Vec<f64> {
     let mut areas = vec![0.0; count];
@@ -182,8 +188,9 @@ fn areas(
     around.iter().for_each(|(vertex, _)| is_counted[vertex.index()] = true);
     let mut front = Vec::new();
     for &(vertex, _) in around {
-        let Some(way) = way_of(vertex) else { continue };
-        let area = &mut areas[way as usize];
+        let Some(area) = areas.get_mut(of_vertex[vertex.index()] as usize) else {
+            continue;
+        };
         *area += area_around(vertex);
         front.push(vertex);
         while let Some(vertex) = front.pop() {

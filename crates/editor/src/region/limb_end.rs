@@ -58,7 +58,14 @@ pub(super) fn limb_end(
     let limit = AROUND_RADII * radius;
     let around = search.within(&surface.triangles, topology, position, members, limit);
     let around = around.to_vec();
-    let ways = ways(surface, topology, &around, WAY_RADII * radius, BACK_RADII * radius);
+    let least_area = SMALLEST_SHARE * PI * radius.powi(2);
+    let ways = ways(
+        surface,
+        topology,
+        &around,
+        [WAY_RADII, BACK_RADII].map(|radii| radii * radius),
+        least_area,
+    );
     let mut is_around = vec![false; surface.positions.len()];
     around.iter().for_each(|(v, _)| is_around[v.index()] = true);
     let mut surroundings = Surroundings {

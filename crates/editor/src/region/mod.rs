@@ -167,7 +167,9 @@ impl Region {
                     }
                     Reach::Found | Reach::Bounded(_) => {
                         let radius = handle_radius(surface, topology, members);
-                        creases.within_limb(surface, topology, &seeds, radius, most)
+                        // A spine's handle is as large as its limb, and its reach as long as the limb is thick.
+                        let scale = radius.min(most / PART_RADII);
+                        creases.within_limb(surface, topology, &seeds, [radius, scale], most)
                     }
                     Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
                         search.within(&surface.triangles, topology, position, &seeds, most)

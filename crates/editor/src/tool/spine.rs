@@ -181,3 +181,58 @@ fn way_from(point: DVec3, ends: &[DVec3]) -> DVec3 {
     let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
     point - (from + along * share.clamp(0.0, 1.0))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests {
+    use std::f64::consts::PI;
+
+    use pliant_mesh::shapes;
+
+    use super::*;
+
+    /// Half of the distance between the axes of the hairpin's arms, and their length below the bend.
+    const APART: f64 = 1.2;
+    const ARM: f64 = 6.0;
+
+    /// A tube of radius 1 along a hairpin: up at x = -[`APART`], around a bend, and down at x = [`APART`].
+    fn hairpin(side: f64) -> Model {
+        let length = 2.0 * ARM + PI * APART;
+        let mut drawn = shapes::tube(24, 160, length);
+        for p in &mut drawn.positions {
+            let turn = ((p.z - ARM) / APART).clamp(0.0, PI);
+            let (sin, cos) = turn.sin_cos();
+            let outwards = DVec3::new(-cos, 0.0, sin);
+            let height = p.z.min(ARM).min(length - p.z);
+            *p = outwards * (APART + side * p.x) + DVec3::Y * p.y + DVec3::Z * height;
+        }
+        shapes::model(drawn)
+    }
+
+    #[test]
+    fn the_limb_around_a_spine_has_all_of_its_own_skin_and_none_of_that_of_a_limb_beside_it() {
+        let curve = Curve::new(vec![DVec3::new(-APART, 0.0, ARM), DVec3::new(-APART, 0.0, 0.5)], false).unwrap();
+        for side in [1.0, -1.0] {
+            let model = hairpin(side);
+            let positions = &model.surface.positions;
+            let all = (0..).map(SurfaceVertex).zip(positions);
+            let seen: Vec<SurfaceVertex> = all
+                .filter(|(_, p)| p.x < 0.0 && p.y > 0.9 && p.z < ARM)
+                .map(|(v, _)| v)
+                .collect();
+            let displacements = vec![DVec3::ZERO; positions.len()];
+            let found = around(&curve, 1.0, &seen, &model, &displacements);
+            for (vertex, p) in (0..).map(SurfaceVertex).zip(positions) {
+                let is_found = found.binary_search(&vertex).is_ok();
+                match p.x < 0.0 {
+                    true => assert!(is_found || !(0.5..ARM).contains(&p.z), "{p}"),
+                    false => assert!(!is_found || p.z > ARM - 0.5, "{p}"),
+                }
+            }
+            let near = positions
+                .iter()
+                .filter(|p| p.x > 0.0 && p.x + APART < GIRTH && p.z < ARM - 0.5);
+            assert!(near.count() > 20, "the other arm is near the spine");
+        }
+    }
+}

@@ -105,7 +105,7 @@ fn what_was_saved_is_what_is_opened_to_the_bit() {
                 _ => {
                     if let Some(id) = rig.editor.view().selected {
                         let first = rig.editor.document().handles()[0].id;
-                        let reach = if step % 2 == 0 { Reach::Length } else { Reach::Creased };
+                        let reach = [Reach::Length, Reach::Creased, Reach::Bounded][step % 3];
                         rig.command(Command::SetReach(id, reach(0.4)));
                         rig.command(Command::SetParent(id, Some(first)));
                     }
@@ -165,7 +165,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
             "`version` appears twice in the project",
         ),
         ("\"arap\"", "\"arab\"", "arab"),
-        ("\"feature\"", "{\"radii\": -3.0}", "reach"),
+        ("\"found\"", "{\"radii\": -3.0}", "reach"),
         ("\"loose\": \"follow\"", "\"loose\": \"fly\"", "fly"),
     ] {
         assert!(text.contains(from), "{from}");
