@@ -7,7 +7,7 @@
 //! beside the handle are smoothed away. Along a limb none count: the hollow of a knee or of a hock is where it bends.
 
 use glam::DVec3;
-use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology, concavities};
+use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Surface, SurfaceVertex, Topology, concavities};
 
 use super::branching::is_on_limb;
 use super::limb_end::limb_end;
@@ -56,6 +56,9 @@ impl CreaseSearch {
 
     /// The same, where ways also count as longer beyond the end of the limb that the handle is on, and none leads to a
     /// limb beside it. `scale` is that of the limb, in world units, as a handle's radius is.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
     pub(super) fn within_limb(
         &mut self,
         surface: &Surface,
@@ -63,20 +66,21 @@ impl CreaseSearch {
         members: &[(SurfaceVertex, f64)],
         [radius, scale]: [f64; 2],
         most: f64,
-    ) -> &[(SurfaceVertex, f64)] {
+        cancel: &Cancel,
+    ) -> Result<&[(SurfaceVertex, f64)], Cancelled> {
         self.search_plain(surface, topology, members, most);
-        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, scale) {
+        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, scale, cancel)? {
             self.stretch.resize(surface.positions.len(), 1.0);
             for (vertex, times) in beyond {
                 self.stretch[vertex.index()] = times;
                 self.stretched.push(vertex);
             }
         } else if self.is_on_limb(surface, topology, radius) {
-            return &self.plain;
+            return Ok(&self.plain);
         } else {
             self.stretch_creases(surface, topology, radius);
         }
-        self.stretched_within(surface, topology, members, most)
+        Ok(self.stretched_within(surface, topology, members, most))
     }
 
     /// Finds the vertices within plain distance.

@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
+use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Surface, SurfaceVertex, Topology};
 
 use super::fronts::{Way, ways};
 
@@ -47,17 +47,22 @@ const BEYOND: f64 = 4.0;
 /// By how many times ways count as longer at vertices beyond the end of the limb on which a handle of this radius with
 /// these members is; infinitely many on a limb beside it. `None` if it is on no limb, or the limb meets no other one near
 /// the handle.
+///
+/// # Errors
+/// [`Cancelled`] soon after `cancel` is raised.
 pub(super) fn limb_end(
     search: &mut DistanceSearch,
     surface: &Surface,
     topology: &Topology,
     members: &[(SurfaceVertex, f64)],
     radius: f64,
-) -> Option<Vec<(SurfaceVertex, f64)>> {
+    cancel: &Cancel,
+) -> Result<Option<Vec<(SurfaceVertex, f64)>>, Cancelled> {
     let position = |v: SurfaceVertex| surface.positions[v.index()];
     let limit = AROUND_RADII * radius;
     let around = search.within(&surface.triangles, topology, position, members, limit);
     let around = around.to_vec();
+    cancel.check()?;
     let least_area = SMALLEST_SHARE * PI * radius.powi(2);
     let ways = ways(
         surface,
@@ -76,15 +81,17 @@ pub(super) fn limb_end(
         is_around,
         members,
         radius,
+        cancel,
     };
-    if let Some([tip, body]) = ways.sides() {
-        let found = surroundings.end(Some(&tip), &body);
-        if found.is_some() {
-            return found;
-        }
+    let mut limb = match ways.sides() {
+        Some([tip, body]) => surroundings.limb(Some(&tip), &body)?,
+        None => None,
+    };
+    if limb.is_none() {
+        // The handle may hold the limb's tip itself.
+        limb = surroundings.limb(None, &ways.all.iter().collect::<Vec<_>>())?;
     }
-    // The handle may hold the limb's tip itself.
-    surroundings.end(None, &ways.all.iter().collect::<Vec<_>>())
+    limb.map(|limb| surroundings.beyond(&limb)).transpose()
 }
 
 /// The surface around a handle.
@@ -96,6 +103,16 @@ struct Surroundings<'a> {
     is_around: Vec<bool>,
     members: &'a [(SurfaceVertex, f64)],
     radius: f64,
+    cancel: &'a Cancel,
+}
+
+/// The limb that a handle is on.
+struct Limb<'a> {
+    /// The distances of the surroundings from its tip.
+    from_tip: Vec<f64>,
+    /// That of the handle's middle.
+    middle: f64,
+    meetings: Vec<Meeting<'a>>,
 }
 
 /// Where another limb meets this one.
@@ -108,65 +125,79 @@ struct Meeting<'a> {
 }
 
 impl Surroundings<'_> {
-    /// The end of the limb with this tip that goes on into these ways; without a tip, it is the part of the handle that is
-    /// farthest from the largest way.
-    fn end(&mut self, tip: Option<&[&Way]>, ways: &[&Way]) -> Option<Vec<(SurfaceVertex, f64)>> {
-        let trunk = ways.iter().max_by(|a, b| a.area.total_cmp(&b.area))?;
+    /// The limb with this tip that goes on into these ways; without a tip, it is the part of the handle that is farthest
+    /// from the largest way. `None` if there is no such limb.
+    fn limb<'a>(&mut self, tip: Option<&[&Way]>, ways: &[&'a Way]) -> Result<Option<Limb<'a>>, Cancelled> {
+        let Some(trunk) = ways.iter().copied().max_by(|a, b| a.area.total_cmp(&b.area)) else {
+            return Ok(None);
+        };
         let tip_area: f64 = tip.into_iter().flatten().map(|way| way.area).sum();
         let least_area = SMALLEST_SHARE * (PI * self.radius.powi(2) + tip_area);
-        let is_limb = |way: &&&Way| !std::ptr::eq(**way, *trunk) && way.area >= least_area;
-        let others: Vec<&Way> = ways.iter().filter(is_limb).copied().collect();
+        let is_limb = |way: &&Way| !std::ptr::eq(*way, trunk) && way.area >= least_area;
+        let others: Vec<&Way> = ways.iter().copied().filter(is_limb).collect();
         if others.is_empty() {
-            return None;
+            return Ok(None);
         }
-        let from_trunk = self.distances(&trunk.end);
-        let tip_ends: Vec<SurfaceVertex> = match tip {
+        let from_trunk = self.distances(&trunk.end)?;
+        let members = self.members.iter().map(|&(v, _)| v);
+        let tip_end: Vec<SurfaceVertex> = match tip {
             Some(tip) => tip.iter().flat_map(|way| way.end.iter().copied()).collect(),
             None => {
-                let members = self.members.iter().map(|&(v, _)| v);
                 let farthest = members.max_by(|a, b| from_trunk[a.index()].total_cmp(&from_trunk[b.index()]));
                 farthest.into_iter().collect()
             }
         };
-        let from_tip = self.distances(&tip_ends);
+        let from_tip = self.distances(&tip_end)?;
         let mut at: Vec<f64> = self.members.iter().map(|(v, _)| from_tip[v.index()]).collect();
         at.sort_by(f64::total_cmp);
-        let middle = *at.get(at.len() / 2)?;
+        let middle = at[at.len() / 2];
         let first = match tip {
             Some(_) => middle - NEAR_RADII * self.radius,
-            None => *at.get(at.len() * 3 / 4)?,
+            None => at[at.len() * 3 / 4],
         };
-        let mut meetings = Vec::new();
-        for way in others {
+        let meetings = others.into_iter().map(|way| {
             let path = self.path(&from_tip, way);
             let turn = turn(&path, &from_trunk, TURN_RADII * self.radius)?;
-            // If another way leaves before the handle, this is no limb with this tip.
-            if from_tip[turn.index()] < first {
-                return None;
-            }
             let end = end(&path, &from_trunk, &from_tip)?;
-            meetings.push(Meeting { way, turn, end });
-        }
+            // If another way leaves before the handle, this is no limb with this tip.
+            (from_tip[turn.index()] >= first).then_some(Meeting { way, turn, end })
+        });
+        let meetings: Option<Vec<Meeting<'a>>> = meetings.collect();
+        Ok(meetings.map(|meetings| Limb {
+            from_tip,
+            middle,
+            meetings,
+        }))
+    }
+
+    /// By how many times ways count as longer beyond a limb's end.
+    fn beyond(&mut self, limb: &Limb<'_>) -> Result<Vec<(SurfaceVertex, f64)>, Cancelled> {
+        let Limb {
+            from_tip,
+            middle,
+            meetings,
+        } = limb;
         let nearest = meetings.iter().map(|meeting| meeting.end).fold(f64::INFINITY, f64::min);
-        let end = nearest.max(middle);
+        let end = nearest.max(*middle);
         let beyond = self.around.iter().filter(|(v, _)| from_tip[v.index()] > end);
         let mut times: Vec<(SurfaceVertex, f64)> = beyond.map(|&(v, _)| (v, BEYOND)).collect();
-        meetings.retain(|meeting| meeting.end <= nearest + NEAR_RADII * self.radius);
-        for Meeting { way, turn, .. } in meetings {
-            let from_way = self.distances(&way.end);
+        let near = |meeting: &&Meeting<'_>| meeting.end <= nearest + NEAR_RADII * self.radius;
+        for Meeting { way, turn, .. } in meetings.iter().filter(near).collect::<Vec<_>>() {
+            let from_way = self.distances(&way.end)?;
             let room = (middle + ROOM_RADII * self.radius - from_tip[turn.index()]).max(0.0);
             for (v, times) in &mut times {
                 let beyond = |distances: &[f64]| distances[v.index()] - distances[turn.index()];
-                if beyond(&from_way) + room < beyond(&from_tip) {
+                if beyond(&from_way) + room < beyond(from_tip) {
                     *times = f64::INFINITY;
                 }
             }
         }
-        Some(times)
+        Ok(times)
     }
 
     /// The distances of the surroundings from the nearest of some vertices; infinite elsewhere.
-    fn distances(&mut self, from: &[SurfaceVertex]) -> Vec<f64> {
+    fn distances(&mut self, from: &[SurfaceVertex]) -> Result<Vec<f64>, Cancelled> {
+        self.cancel.check()?;
         let position = |v: SurfaceVertex| self.surface.positions[v.index()];
         let within = |v: SurfaceVertex| if self.is_around[v.index()] { 1.0 } else { f64::INFINITY };
         let seeds: Vec<(SurfaceVertex, f64)> = from.iter().map(|&v| (v, 0.0)).collect();
@@ -179,7 +210,7 @@ impl Surroundings<'_> {
         {
             distances[v.index()] = at;
         }
-        distances
+        Ok(distances)
     }
 
     /// The path from the end of a way to the tip.

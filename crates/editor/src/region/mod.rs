@@ -169,7 +169,7 @@ impl Region {
                         let radius = handle_radius(surface, topology, members);
                         // A spine's handle is as large as its limb, and its reach as long as the limb is thick.
                         let scale = radius.min(most / PART_RADII);
-                        creases.within_limb(surface, topology, &seeds, [radius, scale], most)
+                        creases.within_limb(surface, topology, &seeds, [radius, scale], most, cancel)?
                     }
                     Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
                         search.within(&surface.triangles, topology, position, &seeds, most)
