@@ -17,6 +17,8 @@ pub fn project(hash: &str, path: &str, drawn: usize, chance: &mut Chance) -> Val
             "turn_deg": [0, 0, chance.between(-720.0, 720.0)], "pivot": [0.5, 0.5, 0],
         });
         let reaches = [
+            json!("found"),
+            json!({ "bounded": 0.3 }),
             json!("feature"),
             json!({ "creased": 0.3 }),
             json!("part"),

@@ -83,15 +83,21 @@ pub struct Twin {
     pub plane: MirrorPlane,
 }
 
-/// The most radii of a handle that [`Reach::Feature`] and [`Reach::Part`] are.
+/// The most radii of a handle that [`Reach::Found`], [`Reach::Feature`] and [`Reach::Part`] are.
 pub(crate) const PART_RADII: f64 = 3.0;
 
 /// The distance along the surface within which a handle moves the surface.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum Reach {
     /// To the end of the feature that the handle is on, where the surface around it widens or, unless it is a limb, in a
-    /// concave crease; at most three radii.
+    /// concave crease; at most three radii. On a limb it ends a little beyond the place where the limb meets another one,
+    /// as a thigh meets the other one in the crotch, and not on the other one.
     #[default]
+    Found,
+    /// This distance in world units, where ways across concave creases and beyond the end of a limb count as longer and
+    /// none leads to a limb beside it, as for [`Reach::Found`] (0: only the painted vertices).
+    Bounded(f64),
+    /// To the end of the feature, wherever limbs meet. No new handle has it: it is that of older projects.
     Feature,
     /// This distance in world units, where ways across concave creases count as longer, as they do for
     /// [`Reach::Feature`] (0: only the painted vertices).

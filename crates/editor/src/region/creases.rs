@@ -7,9 +7,10 @@
 //! beside the handle are smoothed away. Along a limb none count: the hollow of a knee or of a hock is where it bends.
 
 use glam::DVec3;
-use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology, concavities};
+use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Surface, SurfaceVertex, Topology, concavities};
 
 use super::branching::is_on_limb;
+use super::limb_end::limb_end;
 
 /// The length by which a crease of one radian counts, in radii of the handle.
 const CREASE_RADII: f64 = 3.0;
@@ -26,6 +27,8 @@ pub(super) struct CreaseSearch {
     search: DistanceSearch,
     /// By how many times ways at each vertex count as longer; 1 between searches, and empty before the first.
     stretch: Vec<f64>,
+    /// The vertices at which it may be another number.
+    stretched: Vec<SurfaceVertex>,
     /// Scratch memory of one NaN a vertex.
     distances: Vec<f64>,
     /// The vertices within plain distance.
@@ -43,27 +46,75 @@ impl CreaseSearch {
         radius: f64,
         most: f64,
     ) -> &[(SurfaceVertex, f64)] {
-        let Self {
-            search,
-            stretch,
-            distances,
-            plain,
-        } = self;
-        let position = |v: SurfaceVertex| -> DVec3 { surface.positions[v.index()] };
-        plain.clear();
-        plain.extend_from_slice(search.within(&surface.triangles, topology, position, members, most));
-        distances.resize(surface.positions.len(), f64::NAN);
-        if is_on_limb(surface, topology, plain, distances, radius) {
-            return plain;
+        self.search_plain(surface, topology, members, most);
+        if self.is_on_limb(surface, topology, radius) {
+            return &self.plain;
         }
+        self.stretch_creases(surface, topology, radius);
+        self.stretched_within(surface, topology, members, most)
+    }
+
+    /// The same, where ways also count as longer beyond the end of the limb that the handle is on, and none leads to a
+    /// limb beside it. `scale` is that of the limb, in world units, as a handle's radius is.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub(super) fn within_limb(
+        &mut self,
+        surface: &Surface,
+        topology: &Topology,
+        members: &[(SurfaceVertex, f64)],
+        [radius, scale]: [f64; 2],
+        most: f64,
+        cancel: &Cancel,
+    ) -> Result<&[(SurfaceVertex, f64)], Cancelled> {
+        self.search_plain(surface, topology, members, most);
+        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, scale, cancel)? {
+            self.stretch.resize(surface.positions.len(), 1.0);
+            for (vertex, times) in beyond {
+                self.stretch[vertex.index()] = times;
+                self.stretched.push(vertex);
+            }
+        } else if self.is_on_limb(surface, topology, radius) {
+            return Ok(&self.plain);
+        } else {
+            self.stretch_creases(surface, topology, radius);
+        }
+        Ok(self.stretched_within(surface, topology, members, most))
+    }
+
+    /// Finds the vertices within plain distance.
+    fn search_plain(&mut self, surface: &Surface, topology: &Topology, members: &[(SurfaceVertex, f64)], most: f64) {
+        let position = |v: SurfaceVertex| -> DVec3 { surface.positions[v.index()] };
+        let found = self
+            .search
+            .within(&surface.triangles, topology, position, members, most);
+        self.plain.clear();
+        self.plain.extend_from_slice(found);
+    }
+
+    /// Returns true if the surface within plain distance branches.
+    fn is_on_limb(&mut self, surface: &Surface, topology: &Topology, radius: f64) -> bool {
+        self.distances.resize(surface.positions.len(), f64::NAN);
+        is_on_limb(surface, topology, &self.plain, &mut self.distances, radius)
+    }
+
+    /// Lets ways count as longer across the creases within plain distance.
+    fn stretch_creases(&mut self, surface: &Surface, topology: &Topology, radius: f64) {
+        let Self {
+            stretch,
+            stretched,
+            plain,
+            ..
+        } = self;
         // In the mesh's order neighbours are near each other in memory, too.
         plain.sort_unstable_by_key(|&(vertex, _)| vertex);
-        let vertices: Vec<SurfaceVertex> = plain.iter().map(|&(vertex, _)| vertex).collect();
+        stretched.extend(plain.iter().map(|&(vertex, _)| vertex));
         let concavities = concavities(
             &surface.triangles,
             topology,
             &surface.positions,
-            &vertices,
+            stretched,
             SMOOTH_RADII * radius,
         );
         stretch.resize(surface.positions.len(), 1.0);
@@ -72,9 +123,25 @@ impl CreaseSearch {
                 stretch[vertex.index()] += CREASE_RADII * radius * concavity;
             }
         }
-        let stretched = |v: SurfaceVertex| stretch[v.index()];
-        let reached = search.within_stretched(&surface.triangles, topology, position, stretched, members, most);
-        vertices.iter().for_each(|vertex| stretch[vertex.index()] = 1.0);
+    }
+
+    /// Searches by the stretched ways, and forgets how long they are.
+    fn stretched_within(
+        &mut self,
+        surface: &Surface,
+        topology: &Topology,
+        members: &[(SurfaceVertex, f64)],
+        most: f64,
+    ) -> &[(SurfaceVertex, f64)] {
+        let position = |v: SurfaceVertex| -> DVec3 { surface.positions[v.index()] };
+        let stretch = &mut self.stretch;
+        let at = |v: SurfaceVertex| stretch[v.index()];
+        let reached = self
+            .search
+            .within_stretched(&surface.triangles, topology, position, at, members, most);
+        self.stretched
+            .drain(..)
+            .for_each(|vertex| stretch[vertex.index()] = 1.0);
         reached
     }
 }

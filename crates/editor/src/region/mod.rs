@@ -10,7 +10,9 @@
 
 mod branching;
 mod creases;
+mod fronts;
 mod limb_chain;
+mod limb_end;
 mod limb_joint;
 mod loose;
 mod part;
@@ -163,11 +165,17 @@ impl Region {
                         let radius = handle_radius(surface, topology, members);
                         creases.within(surface, topology, &seeds, radius, most)
                     }
+                    Reach::Found | Reach::Bounded(_) => {
+                        let radius = handle_radius(surface, topology, members);
+                        // A spine's handle is as large as its limb, and its reach as long as the limb is thick.
+                        let scale = radius.min(most / PART_RADII);
+                        creases.within_limb(surface, topology, &seeds, [radius, scale], most, cancel)?
+                    }
                     Reach::Part | Reach::Radii(_) | Reach::Length(_) => {
                         search.within(&surface.triangles, topology, position, &seeds, most)
                     }
                 };
-                if matches!(reach, Reach::Feature | Reach::Part) {
+                if matches!(reach, Reach::Found | Reach::Feature | Reach::Part) {
                     distances.resize(surface.positions.len(), f64::NAN);
                     let radius = most / PART_RADII;
                     limit = end_of_part(surface, topology, reached, &mut distances, radius, most);
@@ -316,6 +324,9 @@ pub(crate) fn region_input<M>(model: M, document: &Document, contacts: &FileCont
     }
 }
 
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod limb_tests;
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests;

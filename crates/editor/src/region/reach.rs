@@ -10,9 +10,9 @@ use crate::document::{PART_RADII, Reach};
 /// The most that a reach can be, in world units.
 pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     match reach {
-        Reach::Creased(length) | Reach::Length(length) => length,
+        Reach::Bounded(length) | Reach::Creased(length) | Reach::Length(length) => length,
         Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
-        Reach::Feature | Reach::Part => PART_RADII * handle_radius(surface, topology, members),
+        Reach::Found | Reach::Feature | Reach::Part => PART_RADII * handle_radius(surface, topology, members),
     }
 }
 

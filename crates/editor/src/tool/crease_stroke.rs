@@ -11,7 +11,7 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
 use crate::crease;
-use crate::document::{Crease, HandleCurve, HandleLine};
+use crate::document::{Crease, HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
 use crate::jobs::{Activity, Enclosed};
@@ -151,7 +151,7 @@ impl Gesture for CreaseStroke {
         let is_open = |vertex: &SurfaceVertex| workspace.vertex_access.may_be_painted(vertex.index());
         let vertices: Vec<SurfaceVertex> = vertices.filter(is_open).collect();
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), width);
+            stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), Reach::Length(width));
         });
         Next::End
     }

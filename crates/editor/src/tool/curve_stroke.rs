@@ -16,7 +16,7 @@ use super::paint::PaintStroke;
 use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
 use super::uncut_reach::uncut_reach;
-use crate::document::{HandleCurve, HandleLine};
+use crate::document::{HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
 use crate::input::{Button, Pointer};
 use crate::jobs::{Activity, Enclosed};
@@ -38,15 +38,7 @@ pub(crate) struct CurveStroke {
     /// The stroke that finally paints the vertices.
     stroke: StrokeGesture<PaintStroke>,
     /// The drawn spine, while a job searches for the limb around it.
-    spine: Option<Drawn>,
-}
-
-/// The result of a stroke.
-#[derive(Debug)]
-struct Drawn {
-    curve: HandleCurve,
-    /// The length within which the surface beside what follows the curve follows that.
-    reach: f64,
+    spine: Option<HandleCurve>,
 }
 
 /// What follows a curve.
@@ -85,7 +77,7 @@ impl CurveStroke {
     }
 
     /// The curve with what follows it; `None` if the stroke is too short for one.
-    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<(Drawn, Around)> {
+    fn drawn(&self, workspace: &Workspace, view: &View) -> Option<(HandleCurve, Around)> {
         let picking = workspace.picking(view)?;
         let mut samples = self.samples(&picking);
         let is_closed = self.shape == StrokeShape::Curve && self.path.is_closed();
@@ -98,31 +90,24 @@ impl CurveStroke {
         let curve = HandleCurve::at_rest_through(points, is_closed).ok()?;
         if self.shape == StrokeShape::Spine {
             let seen = samples.iter().map(|sample| sample.pick.vertex).collect();
-            return Some((Drawn { curve, reach: 0.0 }, Around::Limb(half, seen)));
+            return Some((curve, Around::Limb(half, seen)));
         }
         let under = under(curve.rest(), &samples, &picking);
-        let reach = CURVE_REACH * curve.rest().length();
-        (!under.is_empty()).then_some((Drawn { curve, reach }, Around::Under(under)))
+        (!under.is_empty()).then_some((curve, Around::Under(under)))
     }
 
     /// Begins the search for the limb around a spine.
-    fn look_around(&mut self, workspace: &mut Workspace, drawn: Drawn, half: f64, seen: Vec<SurfaceVertex>) {
+    fn look_around(&mut self, workspace: &mut Workspace, drawn: HandleCurve, half: f64, seen: Vec<SurfaceVertex>) {
         let Some(model) = workspace.model().cloned() else {
             return;
         };
-        let (shape, curve) = (workspace.document.from_file().clone(), drawn.curve.clone());
+        let (shape, curve) = (workspace.document.from_file().clone(), drawn.clone());
         let rest = Arc::clone(&workspace.document.rest);
         let work = Box::new(move |_: &_, cancel: &pliant_mesh::Cancel| {
             cancel.check()?;
             let vertices = around(curve.rest(), half, &seen, &model, &shape);
-            let reach = uncut_reach(
-                &model,
-                &rest,
-                &vertices,
-                [SPINE_LEAST_REACH * half, SPINE_REACH * half],
-                cancel,
-            )?;
-            let reach = Some(reach);
+            let range = [SPINE_LEAST_REACH * half, SPINE_REACH * half];
+            let reach = Some(uncut_reach(&model, &rest, &vertices, range, cancel)?);
             Ok(Enclosed { vertices, reach })
         });
         workspace.jobs.ask(|slots| &mut slots.enclose, work);
@@ -130,9 +115,15 @@ impl CurveStroke {
     }
 
     /// Makes a handle of these vertices that follows the curve.
-    fn finish(&mut self, context: &mut Context<'_>, drawn: Drawn, vertices: Vec<SurfaceVertex>) -> Next {
+    fn finish(
+        &mut self,
+        context: &mut Context<'_>,
+        curve: HandleCurve,
+        vertices: Vec<SurfaceVertex>,
+        reach: Reach,
+    ) -> Next {
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, vertices, HandleLine::Curve(drawn.curve), drawn.reach);
+            stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), reach);
         });
         Next::End
     }
@@ -203,9 +194,12 @@ impl Gesture for CurveStroke {
         }
         self.moved(context, pointer);
         match self.drawn(context.workspace, context.view) {
-            Some((drawn, Around::Under(vertices))) => self.finish(context, drawn, vertices),
-            Some((drawn, Around::Limb(half, seen))) => {
-                self.look_around(context.workspace, drawn, half, seen);
+            Some((curve, Around::Under(vertices))) => {
+                let reach = Reach::Length(CURVE_REACH * curve.rest().length());
+                self.finish(context, curve, vertices, reach)
+            }
+            Some((curve, Around::Limb(half, seen))) => {
+                self.look_around(context.workspace, curve, half, seen);
                 Next::Stay
             }
             None => self.refuse(context),
@@ -214,8 +208,8 @@ impl Gesture for CurveStroke {
 
     fn found(&mut self, context: &mut Context<'_>, limb: Enclosed) -> Next {
         match self.spine.take().zip(limb.reach) {
-            Some((drawn, reach)) if !limb.vertices.is_empty() => {
-                self.finish(context, Drawn { reach, ..drawn }, limb.vertices)
+            Some((curve, reach)) if !limb.vertices.is_empty() => {
+                self.finish(context, curve, limb.vertices, Reach::Bounded(reach))
             }
             _ => self.refuse(context),
         }

@@ -62,13 +62,13 @@ impl PaintStroke {
     }
 
     /// Paints a handle's vertices on the shown shape, which becomes the rest shape, and lets them follow a line there;
-    /// `reach` is the length, in world units, within which the surface beside them follows.
+    /// `reach` is that of the handle.
     pub fn take_with_line(
         &mut self,
         workspace: &mut Workspace,
         vertices: Vec<SurfaceVertex>,
         line: HandleLine,
-        reach: f64,
+        reach: Reach,
     ) {
         // An outline across the plane of symmetry is of one view: seen from the other side, it is another one.
         let is_sketch = line.sketch().is_some();
@@ -85,7 +85,7 @@ impl PaintStroke {
             workspace.document.change_handle(id, |handle| {
                 handle.pivot = pivot;
                 handle.line = Some(line);
-                handle.reach = Reach::Length(reach);
+                handle.reach = reach;
             });
         }
     }

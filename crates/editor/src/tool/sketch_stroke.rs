@@ -9,7 +9,7 @@ use super::gesture::{Gesture, Next};
 use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::stroke::StrokeGesture;
-use crate::document::{HandleLine, HandleSketch};
+use crate::document::{HandleLine, HandleSketch, Reach};
 use crate::input::{Button, Pointer};
 use crate::jobs::{Activity, Enclosed};
 use crate::outline;
@@ -150,7 +150,7 @@ impl Gesture for SketchStroke {
             .collect();
         let reach = REACH * bounding_box(&positions).map_or(0.0, |bounds| bounds.diagonal());
         self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), reach);
+            stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), Reach::Length(reach));
         });
         Next::End
     }

@@ -27,8 +27,8 @@ impl Widen {
     pub(crate) fn begin(workspace: &mut Workspace, view: &View, pointer: Option<Pointer>) -> Option<Self> {
         let handle = workspace.selected()?.clone();
         let start_length = match handle.reach {
-            Reach::Creased(length) | Reach::Length(length) => length,
-            Reach::Feature | Reach::Part | Reach::Radii(_) => {
+            Reach::Bounded(length) | Reach::Creased(length) | Reach::Length(length) => length,
+            Reach::Found | Reach::Feature | Reach::Part | Reach::Radii(_) => {
                 workspace.computed().region.reach_length(handle.id).unwrap_or(0.0)
             }
         };
@@ -42,6 +42,7 @@ impl Widen {
             handle: handle.id,
             start_length: start_length.max(px),
             make: match handle.reach {
+                Reach::Found | Reach::Bounded(_) => Reach::Bounded,
                 Reach::Feature | Reach::Creased(_) => Reach::Creased,
                 Reach::Part | Reach::Radii(_) | Reach::Length(_) => Reach::Length,
             },
@@ -62,7 +63,7 @@ impl Gesture for Widen {
 
     fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
         let length = match workspace.document.handle(self.handle).map(|handle| handle.reach) {
-            Some(Reach::Creased(length) | Reach::Length(length)) => length,
+            Some(Reach::Bounded(length) | Reach::Creased(length) | Reach::Length(length)) => length,
             _ => self.start_length,
         };
         Some(format!(

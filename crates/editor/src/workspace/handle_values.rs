@@ -54,8 +54,10 @@ pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::
 /// Sets a handle's reach. This changes roles: the present shape is kept.
 pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     let is_in_range = match reach {
-        Reach::Feature | Reach::Part => true,
-        Reach::Creased(size) | Reach::Radii(size) | Reach::Length(size) => size.is_finite() && size >= 0.0,
+        Reach::Found | Reach::Feature | Reach::Part => true,
+        Reach::Bounded(size) | Reach::Creased(size) | Reach::Radii(size) | Reach::Length(size) => {
+            size.is_finite() && size >= 0.0
+        }
     };
     if !is_in_range {
         workspace.refuse("The reach is out of range: enter a length of at least 0.");

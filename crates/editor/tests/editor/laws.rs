@@ -78,6 +78,7 @@ fn act(rig: &mut Rig, random: &mut Random) {
                 Reach::Radii(2.0),
                 Reach::Length(0.3),
                 Reach::Creased(0.4),
+                Reach::Bounded(0.4),
                 Reach::Radii(4.0),
             ];
             let reach = reaches[random.below(4) as usize];

@@ -165,7 +165,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
             "`version` appears twice in the project",
         ),
         ("\"arap\"", "\"arab\"", "arab"),
-        ("\"feature\"", "{\"radii\": -3.0}", "reach"),
+        ("\"found\"", "{\"radii\": -3.0}", "reach"),
         ("\"loose\": \"follow\"", "\"loose\": \"fly\"", "fly"),
     ] {
         assert!(text.contains(from), "{from}");

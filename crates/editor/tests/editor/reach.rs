@@ -25,7 +25,7 @@ fn on_a_half_ball() -> Rig {
 /// A project of it that was saved before reaches ended in creases.
 fn of_an_older_project(rig: &Rig) -> Rig {
     let mut project: Value = serde_json::from_str(&saved(rig)).unwrap();
-    assert_eq!(project["handles"][0]["reach"], "feature");
+    assert_eq!(project["handles"][0]["reach"], "found");
     project["handles"][0]["reach"] = "part".into();
     reopened(rig, &project.to_string())
 }
@@ -78,7 +78,7 @@ fn a_reach_that_the_pointer_widens_goes_on_to_count_creases_or_not_to() {
         rig.swipe(&[CENTRE_PX + DVec2::X * 60.0]);
         rig.drain();
         let length = match rig.editor.document().handles()[0].reach {
-            Reach::Creased(length) if !is_older => length,
+            Reach::Bounded(length) if !is_older => length,
             Reach::Length(length) if is_older => length,
             other => panic!("older {is_older}: {other:?}"),
         };

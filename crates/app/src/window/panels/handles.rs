@@ -280,6 +280,8 @@ fn reach(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
     let label = row_label(ui, "Reach");
     let found = editor.reach_length(handle.id).unwrap_or_default();
     let (mut value, suffix, units, most, make): (f64, _, &[Unit], _, fn(f64) -> Reach) = match handle.reach {
+        Reach::Found => (found, " (found)", LENGTHS, f64::MAX, Reach::Bounded),
+        Reach::Bounded(length) => (length, "", LENGTHS, f64::MAX, Reach::Bounded),
         Reach::Feature => (found, " (feature)", LENGTHS, f64::MAX, Reach::Creased),
         Reach::Creased(length) => (length, "", LENGTHS, f64::MAX, Reach::Creased),
         Reach::Part => (found, " (part)", LENGTHS, f64::MAX, Reach::Length),
@@ -288,6 +290,11 @@ fn reach(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
     };
     let speed = (0.02 * value).max(1e-4);
     let hover = match handle.reach {
+        Reach::Found | Reach::Bounded(_) => {
+            "Sets the distance along the surface within which it follows this handle. Without a number of yours it ends \
+             with the limb or the feature that the handle is on: where another limb begins, where the surface widens, or \
+             in a crease. Ways across creases and beyond the limb count as longer, and none leads to a limb beside it."
+        }
         Reach::Feature | Reach::Creased(_) => {
             "Sets the distance along the surface within which it follows this handle. Without a number of yours it ends \
              with the feature that the handle is on, where the surface widens or in a crease. Ways across creases count \

@@ -70,6 +70,8 @@ enum StoredPivotPlace {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum StoredReach {
+    Found,
+    Bounded(f64),
     Feature,
     Creased(f64),
     Part,
@@ -119,6 +121,8 @@ impl StoredHandle {
                 PivotPlace::Picked => StoredPivotPlace::Picked,
             },
             reach: match handle.reach {
+                Reach::Found => StoredReach::Found,
+                Reach::Bounded(length) => StoredReach::Bounded(length),
                 Reach::Feature => StoredReach::Feature,
                 Reach::Creased(length) => StoredReach::Creased(length),
                 Reach::Part => StoredReach::Part,
@@ -155,10 +159,11 @@ impl StoredHandle {
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
         let is_reach_refused = match self.reach {
-            StoredReach::Feature | StoredReach::Part => false,
-            StoredReach::Creased(size) | StoredReach::Radii(size) | StoredReach::Length(size) => {
-                !(size.is_finite() && size >= 0.0)
-            }
+            StoredReach::Found | StoredReach::Feature | StoredReach::Part => false,
+            StoredReach::Bounded(size)
+            | StoredReach::Creased(size)
+            | StoredReach::Radii(size)
+            | StoredReach::Length(size) => !(size.is_finite() && size >= 0.0),
         };
         let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
             || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
@@ -195,6 +200,8 @@ impl StoredHandle {
                 StoredPivotPlace::Picked => PivotPlace::Picked,
             },
             reach: match self.reach {
+                StoredReach::Found => Reach::Found,
+                StoredReach::Bounded(length) => Reach::Bounded(length),
                 StoredReach::Feature => Reach::Feature,
                 StoredReach::Creased(length) => Reach::Creased(length),
                 StoredReach::Part => Reach::Part,
