@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::body_way::BodyWay;
-use super::filters::FilterWork;
-use super::footprints::FootprintWork;
+use super::filter_work::FilterWork;
+use super::footprint_work::FootprintWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
