@@ -167,7 +167,7 @@ impl Region {
                     }
                     Reach::Found | Reach::Bounded(_) => {
                         let radius = handle_radius(surface, topology, members);
-                        // A spine's handle is as large as its limb, and its reach as long as the limb is thick.
+                        // The parts of a handle as large as its whole limb are told apart at the scale of its reach.
                         let scale = radius.min(most / PART_RADII);
                         creases.within_limb(surface, topology, &seeds, [radius, scale], most, cancel)?
                     }
