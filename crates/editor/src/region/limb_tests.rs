@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec3, IVec3};
 use pliant_mesh::{Drawn, DrawnVertex, shapes};
 
+use super::tests::painted_input;
 use super::*;
 
 /// A round bar between two points, in world units.
@@ -99,19 +100,7 @@ fn of_ring(bars: &[Bar], ring: std::ops::Range<f64>, reach: Reach) -> (RegionInp
             false => Paint::Bare,
         }
     };
-    let input = RegionInput {
-        paint: Arc::new(model.surface.positions.iter().map(paint).collect()),
-        model: Arc::new(model),
-        handles: vec![(HandleId(0), reach)],
-        rest: None,
-        is_of_file: false,
-        tips: Tips::ComeAlong,
-        loose: Loose::Follow,
-        loose_parts: Arc::default(),
-        access: Arc::default(),
-        contacts: FileContacts::default(),
-        has_controls: false,
-    };
+    let input = painted_input(model, &[HandleId(0)], reach, paint);
     let region = Region::measure(&input, &Cancel::new()).unwrap();
     (input, region)
 }

@@ -10,23 +10,17 @@ use crate::Reach;
 use crate::document::{HandleId, Paint, Tips};
 use crate::region::{FileContacts, Region, RegionInput};
 
-/// A sheet over the unit square with a handle: the vertices within `radius` of its middle.
-fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
-    let drawn = shapes::grid(60, 60);
-    let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
-    let middle = DVec3::new(0.5, 0.5, 0.0);
-    let is_inside = |p: &DVec3| p.distance(middle) <= radius;
-    let paint = |p| {
-        if is_inside(p) {
-            Paint::Handle(HandleId(7))
-        } else {
-            Paint::Bare
-        }
-    };
+/// A model whose vertices are painted by their positions, with handles of this reach.
+pub(super) fn painted_input(
+    model: Model,
+    handles: &[HandleId],
+    reach: Reach,
+    paint: impl Fn(&DVec3) -> Paint,
+) -> RegionInput {
     RegionInput {
         paint: Arc::new(model.surface.positions.iter().map(paint).collect()),
         model: Arc::new(model),
-        handles: vec![(HandleId(3), reach), (HandleId(7), reach)],
+        handles: handles.iter().map(|id| (*id, reach)).collect(),
         rest: None,
         is_of_file: false,
         tips: Tips::ComeAlong,
@@ -36,6 +30,22 @@ fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
         contacts: FileContacts::default(),
         has_controls: false,
     }
+}
+
+/// A sheet over the unit square with a handle: the vertices within `radius` of its middle.
+fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
+    let drawn = shapes::grid(60, 60);
+    let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
+    let middle = DVec3::new(0.5, 0.5, 0.0);
+    let is_inside = |p: &DVec3| p.distance(middle) <= radius;
+    let paint = |p: &DVec3| {
+        if is_inside(p) {
+            Paint::Handle(HandleId(7))
+        } else {
+            Paint::Bare
+        }
+    };
+    painted_input(model, &[HandleId(3), HandleId(7)], reach, paint)
 }
 
 #[test]

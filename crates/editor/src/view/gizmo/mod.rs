@@ -113,7 +113,7 @@ mod tests {
     use glam::{DVec2, DVec3};
 
     use super::super::camera::Camera;
-    use super::{GizmoAxes, GizmoMode, GizmoPart, gizmo_shapes, hit_gizmo};
+    use super::{GizmoAxes, GizmoMode, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
 
     const VIEWPORT_PX: DVec2 = DVec2::new(900.0, 700.0);
 
@@ -123,6 +123,19 @@ mod tests {
             target: DVec3::new(3.0, 1.0, -2.0),
             ..Camera::default()
         }
+    }
+
+    /// The whole gizmo from a direction, and the place of its middle on the screen.
+    fn seen_from(yaw_rad: f64, pitch_rad: f64) -> (Camera, Vec<GizmoShape>, DVec2) {
+        let camera = Camera {
+            yaw_rad,
+            pitch_rad,
+            ..camera(4.0)
+        };
+        let centre = camera.target;
+        let shapes = gizmo_shapes(GizmoMode::All, centre, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
+        let middle_px = camera.project(centre, VIEWPORT_PX).unwrap();
+        (camera, shapes, middle_px)
     }
 
     #[test]
@@ -152,14 +165,7 @@ mod tests {
     #[test]
     fn the_square_in_the_middle_is_hit_over_twelve_points_from_every_side() {
         for (yaw_rad, pitch_rad) in [(0.0, 0.0), (0.4, 0.3), (1.2, -0.7), (2.5, 1.4)] {
-            let camera = Camera {
-                yaw_rad,
-                pitch_rad,
-                ..camera(4.0)
-            };
-            let centre = camera.target;
-            let shapes = gizmo_shapes(GizmoMode::All, centre, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
-            let middle_px = camera.project(centre, VIEWPORT_PX).unwrap();
+            let (camera, shapes, middle_px) = seen_from(yaw_rad, pitch_rad);
             for corner in [[-6.0, -6.0], [6.0, -6.0], [-6.0, 6.0], [6.0, 6.0], [0.0, 0.0]] {
                 let hit = hit_gizmo(&shapes, middle_px + DVec2::from(corner), &camera, VIEWPORT_PX);
                 assert_eq!(hit, Some(GizmoPart::Centre), "{yaw_rad} {pitch_rad} {corner:?}");
@@ -170,14 +176,7 @@ mod tests {
     #[test]
     fn seen_along_an_axis_nothing_lies_around_the_middle_that_turns_or_moves_in_depth() {
         for (yaw_rad, pitch_rad) in [(0.0, 0.0), (0.1, -0.1), (1.57, 0.05), (0.0, 1.5)] {
-            let camera = Camera {
-                yaw_rad,
-                pitch_rad,
-                ..camera(4.0)
-            };
-            let centre = camera.target;
-            let shapes = gizmo_shapes(GizmoMode::All, centre, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
-            let middle_px = camera.project(centre, VIEWPORT_PX).unwrap();
+            let (camera, shapes, middle_px) = seen_from(yaw_rad, pitch_rad);
             let sight = camera.forward();
             for step in 0..48 {
                 let angle_rad = f64::from(step) * std::f64::consts::TAU / 48.0;
