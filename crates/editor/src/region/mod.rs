@@ -167,7 +167,7 @@ impl Region {
                     }
                     Reach::Found | Reach::Bounded(_) => {
                         let radius = handle_radius(surface, topology, members);
-                        // The parts of a handle as large as its whole limb are told apart at the scale of its reach.
+                        // A handle may be as large as its limb: then its reach gives the scale at which limbs are told apart.
                         let scale = radius.min(most / PART_RADII);
                         creases.within_limb(surface, topology, &seeds, [radius, scale], most, cancel)?
                     }

@@ -81,7 +81,7 @@ fn act(rig: &mut Rig, random: &mut Random) {
                 Reach::Bounded(0.4),
                 Reach::Radii(4.0),
             ];
-            let reach = reaches[random.below(4) as usize];
+            let reach = reaches[random.below(reaches.len() as u64) as usize];
             if let Some(id) = rig.editor.view().selected {
                 unmoved(rig, |rig| rig.command(Command::SetReach(id, reach)));
             }
