@@ -12,6 +12,8 @@ pub struct Session {
     pub harness: Harness<'static, Application>,
     /// The times of all frames since the last row, drawing included.
     whole: Vec<Duration>,
+    /// The most processor time that the window's thread has used in a frame since the last row, drawing included.
+    busiest: Option<Duration>,
 }
 
 impl Session {
@@ -26,6 +28,7 @@ impl Session {
         let mut session = Self {
             harness,
             whole: Vec::new(),
+            busiest: None,
         };
         session.settle();
         session
@@ -33,9 +36,11 @@ impl Session {
 
     /// A frame.
     pub fn step(&mut self) {
-        let start = Instant::now();
+        let (start, used_before) = (Instant::now(), processor_time());
         self.harness.step();
         self.whole.push(start.elapsed());
+        let used = processor_time().zip(used_before).map(|(now, before)| now - before);
+        self.busiest = self.busiest.max(used);
     }
 
     /// Frames until all jobs have ended and the camera stands still.
@@ -93,6 +98,7 @@ impl Session {
     pub fn begin_row(&mut self) {
         self.harness.state_mut().take_longest_frame();
         self.whole.clear();
+        self.busiest = None;
     }
 
     /// The longest frame since the last row, without drawing.
@@ -120,7 +126,8 @@ impl Session {
     }
 
     /// Prints the longest frame since the last row: the window's thread without drawing, and with it, which tells
-    /// something on a real device alone.
+    /// something on a real device alone. `busiest_ms` is the thread's own processor time, which leaves out what it waits
+    /// while the system runs other threads on its core.
     pub fn row(&mut self, what: &str) {
         let longest = self.longest_frame();
         self.whole.sort();
@@ -129,8 +136,11 @@ impl Session {
             count => [self.whole[count / 2], self.whole[count - 1]],
         };
         self.whole.clear();
+        let busiest = self.busiest.take().map_or(serde_json::Value::Null, |used| {
+            ((ms(used) * 10.0).round() / 10.0).into()
+        });
         println!(
-            "{{\"doing\": \"{what}\", \"longest_frame_ms\": {:.1}, \"drawn_median_ms\": {:.2}, \"drawn_longest_ms\": {:.1}}}",
+            "{{\"doing\": \"{what}\", \"longest_frame_ms\": {:.1}, \"busiest_ms\": {busiest}, \"drawn_median_ms\": {:.2}, \"drawn_longest_ms\": {:.1}}}",
             ms(longest),
             ms(median),
             ms(whole)
@@ -140,4 +150,10 @@ impl Session {
 
 pub fn ms(duration: Duration) -> f64 {
     duration.as_secs_f64() * 1e3
+}
+
+/// The processor time that the calling thread has used so far, where the system tells it (Linux).
+fn processor_time() -> Option<Duration> {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    told.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }

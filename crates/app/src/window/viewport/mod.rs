@@ -415,6 +415,7 @@ impl Viewport {
         let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
         let pixels_per_point = drawn_share as f32;
         let overlays = drawing::overlays(view, centre, pixels_per_point);
+        let start = Instant::now();
         if let Some(shown) = &mut self.surface {
             shown.update_shadow(&mut renderer, view, key.shadow)?;
         }
@@ -443,7 +444,6 @@ impl Viewport {
             grid: ground.as_ref().filter(|_| has_ground),
             overlays: &overlays,
         };
-        let start = Instant::now();
         let drawn = renderer.draw(&self.target, &frame);
         self.drawing_time += start.elapsed();
         drawn.map(|()| true)
