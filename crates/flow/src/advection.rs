@@ -18,17 +18,28 @@ use crate::fluid::Fluid;
 use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
-use crate::trace::Place;
-
-/// The number of vertices that are looked back from at a time.
-const BLOCK: usize = 64;
+use crate::trace::{BLOCK, Place};
 
 /// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
 pub(crate) type Dye = [f64; 4];
 
-/// Fields at the vertices, kept from step to step.
+/// The larger value of each channel; of two that are numbers, in one instruction, unlike [`f64::max`].
+#[inline]
+pub(crate) fn larger(a: Dye, b: Dye) -> Dye {
+    std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
+}
+
+/// The smaller value of each channel.
+#[inline]
+pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
+    std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
+}
+
+/// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
+    /// Each triangle's velocity, and that which is carried, times its area.
+    fields: Vec<[DVec2; 2]>,
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
     /// The velocity that is carried.
@@ -44,7 +55,9 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
-    fn resize(&mut self, count: usize, has_dye: bool) {
+    fn resize(&mut self, fluid: &Fluid<'_>, has_dye: bool) {
+        let count = fluid.vertex_count();
+        self.fields.resize(fluid.triangle_count(), [DVec2::ZERO; 2]);
         self.own.resize(count, DVec2::ZERO);
         self.carried.resize(count, DVec2::ZERO);
         self.first.resize(count, DVec2::ZERO);
@@ -70,14 +83,16 @@ pub(crate) fn advect(
     scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    scratch.resize(fluid.vertex_count(), !dye.is_empty());
-    let own_and_half_pushed = |triangle: usize| {
+    scratch.resize(fluid, !dye.is_empty());
+    let own_and_half_pushed = |(triangle, fields): (usize, &mut [DVec2; 2])| {
         let chart = &fluid.domain.charts[triangle];
         let own = velocity[triangle] * chart.area();
         let values = fluid.corners(triangle).map(|corner| pressure[corner]);
-        [own, own - 0.5 * steps * chart.gradient_area(values)]
+        *fields = [own, own - 0.5 * steps * chart.gradient_area(values)];
     };
-    fluid.to_vertices(own_and_half_pushed, [&mut scratch.own, &mut scratch.carried]);
+    let fields = scratch.fields.par_iter_mut().with_min_len(CHUNK).enumerate();
+    fields.for_each(own_and_half_pushed);
+    fluid.to_vertices(&scratch.fields, [&mut scratch.own, &mut scratch.carried]);
     backward(fluid, dye, seconds, scratch, cancel)?;
     match advection {
         Advection::FirstOrder => {
@@ -118,22 +133,22 @@ fn backward(
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
             cancel.check()?;
             // One thing after another for several vertices, so that the processor waits for several places at a time.
-            let mut places = [None; BLOCK];
+            let (mut places, mut ways) = ([None; BLOCK], [DVec2::ZERO; BLOCK]);
             for start in (0..first.len()).step_by(BLOCK) {
                 let vertices = start..(start + BLOCK).min(first.len());
                 let vertex = |i: usize| chunk * CHUNK + i;
-                for (i, place) in vertices.clone().zip(&mut places) {
-                    *place = domain.trace(vertex(i), own[vertex(i)] * (-0.5 * seconds));
+                let ways = &mut ways[..vertices.len()];
+                for (i, way) in vertices.clone().zip(ways.iter_mut()) {
+                    *way = own[vertex(i)] * (-0.5 * seconds);
                 }
-                for (i, place) in vertices.clone().zip(&places) {
-                    forward[i] = place.map_or(DVec2::ZERO, |half| at(&half, own));
-                }
-                for (i, place) in vertices.clone().zip(&mut places) {
-                    let middle = forward[i];
-                    *place = domain.trace(vertex(i), middle * -seconds);
+                domain.trace(vertex(start), ways, &mut places);
+                for ((i, way), place) in vertices.clone().zip(ways.iter_mut()).zip(&places) {
+                    let middle = place.map_or(DVec2::ZERO, |half| at(&half, own));
+                    *way = middle * -seconds;
                     // The velocity half a step forward, by extrapolation.
                     forward[i] = (2.0 * own[vertex(i)] - middle) * seconds;
                 }
+                domain.trace(vertex(start), ways, &mut places);
                 for (i, place) in vertices.clone().zip(&places) {
                     if let Some(back) = place {
                         first[i] = at(back, carried);
@@ -169,9 +184,9 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cance
         let mut places = [None; BLOCK];
         for start in (0..change.len()).step_by(BLOCK) {
             let vertices = start..(start + BLOCK).min(change.len());
-            for (i, place) in vertices.clone().zip(&mut places) {
-                *place = fluid.domain.trace(chunk * CHUNK + i, change[i]);
-            }
+            fluid
+                .domain
+                .trace(chunk * CHUNK + start, &change[vertices.clone()], &mut places);
             for (i, place) in vertices.clone().zip(&places) {
                 let vertex = chunk * CHUNK + i;
                 change[i] = place.map_or(DVec2::ZERO, |ahead| {
@@ -185,12 +200,11 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cance
                 let vertex = chunk * CHUNK + start + i;
                 let Some(ahead) = place else { continue };
                 let returned = dye_at(fluid, ahead, first_dye);
-                let bounds = fluid.corners(source[vertex] as usize).map(|corner| dye[corner]);
-                *new_dye = std::array::from_fn(|k| {
-                    let corrected = first_dye[vertex][k] + 0.5 * (dye[vertex][k] - returned[k]);
-                    let [a, b, c] = bounds.map(|bound| bound[k]);
-                    corrected.clamp(a.min(b).min(c), a.max(b).max(c))
-                });
+                let corrected: Dye =
+                    std::array::from_fn(|k| first_dye[vertex][k] + 0.5 * (dye[vertex][k] - returned[k]));
+                let [a, b, c] = fluid.corners(source[vertex] as usize).map(|corner| dye[corner]);
+                let (least, most) = (smaller(smaller(a, b), c), larger(larger(a, b), c));
+                *new_dye = smaller(larger(corrected, least), most);
             }
         }
         Ok(())

@@ -7,7 +7,7 @@
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
-use crate::advection::Dye;
+use crate::advection::{Dye, larger, smaller};
 use crate::fluid::Fluid;
 use crate::sums::{CHUNK, sums};
 
@@ -27,18 +27,12 @@ pub(crate) fn conserve(fluid: &Fluid<'_>, wanted: &[Dye], dye: &mut [Dye], room:
     let old = &*dye;
     let toward = |(vertex, room): (usize, &mut Dye)| {
         let (own, missing) = (old[vertex], missing[fluid.component(vertex)]);
-        let mut ends = own;
+        let (mut least, mut most) = (own, own);
         for neighbour in fluid.sheets.topology.neighbours(SurfaceVertex(vertex as u32)) {
             let other = old[neighbour.index()];
-            for k in 0..4 {
-                ends[k] = if missing[k] > 0.0 {
-                    ends[k].max(other[k])
-                } else {
-                    ends[k].min(other[k])
-                };
-            }
+            (least, most) = (smaller(least, other), larger(most, other));
         }
-        *room = std::array::from_fn(|k| ends[k] - own[k]);
+        *room = std::array::from_fn(|k| if missing[k] > 0.0 { most[k] } else { least[k] } - own[k]);
     };
     room.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(toward);
     let mut shares = integrals(fluid, room);

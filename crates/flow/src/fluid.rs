@@ -106,15 +106,15 @@ impl<'a> Fluid<'a> {
         squares.into_iter().map(|[square]| square.sqrt()).collect()
     }
 
-    /// Fills `out` with the means around each vertex of two fields, in its tangent plane. `of` gives a triangle's vectors
-    /// times its area.
-    pub fn to_vertices(&self, of: impl Fn(usize) -> [DVec2; 2] + Sync, [first, second]: [&mut [DVec2]; 2]) {
+    /// Fills `first` and `second` with the means around each vertex of two fields, in its tangent plane. `fields` has
+    /// each triangle's vectors times its area.
+    pub fn to_vertices(&self, fields: &[[DVec2; 2]], [first, second]: [&mut [DVec2]; 2]) {
         let fans = &self.domain.fans;
         let mean = |(vertex, (first, second)): (usize, (&mut DVec2, &mut DVec2))| {
             let mut sums = [DVec2::ZERO; 2];
             for &corner in fans.corners(vertex) {
                 let rotation = fans.rotation(corner);
-                for (sum, vector) in sums.iter_mut().zip(of(corner as usize / 3)) {
+                for (sum, vector) in sums.iter_mut().zip(fields[corner as usize / 3]) {
                     *sum += turned(rotation, vector);
                 }
             }

@@ -25,6 +25,8 @@ pub(crate) struct Pressure {
     equation: PoissonEquation,
     /// The weak divergence at each vertex.
     load: Vec<f64>,
+    /// Each triangle's terms in it.
+    terms: Vec<[f64; 3]>,
     pressure: Vec<f64>,
     /// All pressure of the last projection, whose gradient has the unit of a velocity.
     total: Vec<f64>,
@@ -35,6 +37,7 @@ impl Pressure {
         Self {
             equation,
             load: vec![0.0; vertex_count],
+            terms: Vec::new(),
             pressure: vec![0.0; vertex_count],
             total: vec![0.0; vertex_count],
         }
@@ -64,8 +67,11 @@ impl Pressure {
         let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
         let enough = ENOUGH * fastest / fluid.mean_edge;
         self.total.fill(0.0);
+        self.terms.resize(fluid.triangle_count(), [0.0; 3]);
+        let terms = self.terms.par_iter_mut().with_min_len(CHUNK).enumerate();
+        terms.for_each(|(triangle, terms)| *terms = corner_terms(fluid, triangle, velocity[triangle]));
         for _ in 0..MOST {
-            divergence(fluid, velocity, &mut self.load);
+            sum_terms(fluid, &self.terms, &mut self.load);
             if norm(fluid, &self.load) <= enough {
                 break;
             }
@@ -76,29 +82,32 @@ impl Pressure {
                 .iter_mut()
                 .zip(pressure)
                 .for_each(|(total, pressure)| *total += pressure);
-            let subtract = |(triangle, velocity): (usize, &mut DVec2)| {
+            let subtract = |(triangle, (velocity, terms)): (usize, (&mut DVec2, &mut [f64; 3]))| {
                 let values = fluid.corners(triangle).map(|vertex| pressure[vertex]);
                 *velocity -= fluid.domain.charts[triangle].gradient(values);
+                *terms = corner_terms(fluid, triangle, *velocity);
             };
-            velocity
-                .par_iter_mut()
-                .with_min_len(CHUNK)
-                .enumerate()
-                .for_each(subtract);
+            let pairs = velocity.par_iter_mut().zip(&mut self.terms).with_min_len(CHUNK);
+            pairs.enumerate().for_each(subtract);
         }
         Ok(())
     }
 }
 
+/// Twice the share of a triangle in the weak divergence at each of its corners.
+#[inline]
+fn corner_terms(fluid: &Fluid<'_>, triangle: usize, velocity: DVec2) -> [f64; 3] {
+    // A ∇φ is half the edge opposite, turned to the left.
+    let term = |k| fluid.domain.charts[triangle].edge(k).perp_dot(velocity);
+    [term(0), term(1), term(2)]
+}
+
 /// Fills `out` with the weak divergence at each vertex.
-fn divergence(fluid: &Fluid<'_>, velocity: &[DVec2], out: &mut [f64]) {
+fn sum_terms(fluid: &Fluid<'_>, terms: &[[f64; 3]], out: &mut [f64]) {
+    let terms = terms.as_flattened();
     let of = |(vertex, out): (usize, &mut f64)| {
-        // A ∇φ is half the edge opposite, turned to the left.
-        let term = |&corner: &u32| {
-            let (triangle, k) = (corner as usize / 3, corner as usize % 3);
-            fluid.domain.charts[triangle].edge(k).perp_dot(velocity[triangle])
-        };
-        *out = 0.5 * fluid.domain.fans.corners(vertex).iter().map(term).sum::<f64>();
+        let corners = fluid.domain.fans.corners(vertex).iter();
+        *out = 0.5 * corners.map(|&corner| terms[corner as usize]).sum::<f64>();
     };
     out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(of);
 }
@@ -106,7 +115,10 @@ fn divergence(fluid: &Fluid<'_>, velocity: &[DVec2], out: &mut [f64]) {
 /// The root of the squared divergence's integral.
 pub(crate) fn divergence_norm(fluid: &Fluid<'_>, velocity: &[DVec2]) -> f64 {
     let mut load = vec![0.0; fluid.vertex_count()];
-    divergence(fluid, velocity, &mut load);
+    let terms: Vec<[f64; 3]> = (0..fluid.triangle_count())
+        .map(|triangle| corner_terms(fluid, triangle, velocity[triangle]))
+        .collect();
+    sum_terms(fluid, &terms, &mut load);
     norm(fluid, &load)
 }
 

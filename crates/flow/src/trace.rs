@@ -8,7 +8,10 @@ use glam::DVec2;
 use crate::chart::Chart;
 use crate::fans::Fans;
 use crate::hinges::{Hinges, WALL, last, next};
-use crate::plane::{conjugate, turned, turned_back};
+use crate::plane::{self, conjugate, turned, turned_back};
+
+/// The most ways that are traced at a time.
+pub(crate) const BLOCK: usize = 64;
 
 /// A way ends after this many edges. Only a velocity far above an edge a step, or a pile of needles, comes so far.
 const MOST_EDGES: usize = 1024;
@@ -32,8 +35,11 @@ pub(crate) struct Domain {
 }
 
 /// A way that has come to a point.
+#[derive(Clone, Copy, Default)]
 struct Walk {
     triangle: u32,
+    /// The edge through which the triangle was entered: rounding must not lead back through it.
+    entered: Option<usize>,
     weights: [f64; 3],
     /// The rest of the way.
     left: DVec2,
@@ -42,14 +48,66 @@ struct Walk {
     rotation: DVec2,
 }
 
-impl Domain {
-    /// The end of the way from a vertex along `displacement`, a vector in its tangent plane; `None` for a bare vertex.
+impl Walk {
+    /// Goes a share of the way that is left.
     #[inline]
-    pub fn trace(&self, vertex: usize, displacement: DVec2) -> Option<Place> {
+    fn advance(&mut self, share: f64) {
+        for (weight, rate) in self.weights.iter_mut().zip(self.rates) {
+            *weight = (*weight + share * rate).max(0.0);
+        }
+        self.left *= 1.0 - share;
+    }
+
+    /// The point to which it has come.
+    #[inline]
+    fn end(&self) -> Place {
+        let sum: f64 = self.weights.iter().sum();
+        Place {
+            triangle: self.triangle,
+            weights: self.weights.map(|weight| weight / sum),
+            rotation: self.rotation,
+        }
+    }
+}
+
+impl Domain {
+    /// The ends of the ways from the vertices from `first` on, as many as there are `displacements`, at most [`BLOCK`],
+    /// each a vector in the tangent plane of its vertex; `None` for a bare vertex.
+    ///
+    /// One thing after another for all of them, so that the processor works at several ways at a time: each thing waits
+    /// for the one before, for memory or for a root.
+    pub fn trace(&self, first: usize, displacements: &[DVec2], places: &mut [Option<Place>; BLOCK]) {
+        let count = displacements.len().min(BLOCK);
+        let mut angles = [0.0; BLOCK];
+        for (angle, &displacement) in angles.iter_mut().zip(displacements) {
+            *angle = plane::angle(displacement);
+        }
+        let mut sectors = [0; BLOCK];
+        for (i, (sector, &angle)) in sectors.iter_mut().zip(&angles).enumerate().take(count) {
+            *sector = self.fans.sector(first + i, angle);
+        }
+        let mut walks = [Walk::default(); BLOCK];
+        for (i, walk) in walks.iter_mut().enumerate().take(count) {
+            let begun = self.begin(first + i, (displacements[i], angles[i], sectors[i]));
+            *walk = begun.unwrap_or_default();
+        }
+        let walks = &mut walks[..count];
+        self.walk(walks);
+        for (i, (place, walk)) in places.iter_mut().zip(walks).enumerate() {
+            let is_bare = self.fans.corners(first + i).is_empty();
+            *place = (!is_bare).then(|| walk.end());
+        }
+    }
+
+    /// The beginning of the way from a vertex along a displacement, at an angle and in a sector of its fan.
+    #[inline]
+    fn begin(&self, vertex: usize, (displacement, angle, sector): (DVec2, f64, usize)) -> Option<Walk> {
         let own = *self.fans.corners(vertex).first()?;
         let way = match displacement == DVec2::ZERO {
             true => None,
-            false => self.fans.way(vertex, displacement, &self.hinges, &self.charts),
+            false => self
+                .fans
+                .way(vertex, (displacement, angle, sector), &self.hinges, &self.charts),
         };
         let (corner, left) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
         let k = corner as usize % 3;
@@ -57,47 +115,48 @@ impl Domain {
         weights[k] = 1.0;
         let rates = self.charts[corner as usize / 3].rates(left);
         let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
-        Some(self.walk(Walk {
+        Some(Walk {
             triangle: corner / 3,
+            entered: None,
             weights,
             left,
             rates,
             rotation: conjugate(self.fans.rotation_along(corner, after, before)),
-        }))
+        })
     }
 
-    /// Walks to the end.
-    fn walk(&self, mut walk: Walk) -> Place {
-        // The edge through which the triangle was entered: rounding must not lead back through it.
-        let mut entered = None;
-        for _ in 0..MOST_EDGES {
-            if walk.left == DVec2::ZERO {
-                break;
-            }
-            let rates = walk.rates;
-            let Some((k, share)) = exit(walk.weights, rates, entered) else {
-                for (weight, rate) in walk.weights.iter_mut().zip(rates) {
-                    *weight += rate;
-                }
-                break;
-            };
-            for (weight, rate) in walk.weights.iter_mut().zip(rates) {
-                *weight = (*weight + share * rate).max(0.0);
-            }
-            walk.weights[k] = 0.0;
-            walk.left *= 1.0 - share;
-            let edge = 3 * walk.triangle + k as u32;
-            entered = match self.hinges.beside(edge) {
-                WALL => self.slide(&mut walk, edge),
-                other => Some(self.cross(&mut walk, edge, other)),
-            };
+    /// Walks at most [`BLOCK`] ways to their ends, all of them across a triangle before any goes on: how many one crosses
+    /// can't be guessed, and a wrong guess throws away what was begun of the next way.
+    fn walk(&self, walks: &mut [Walk]) {
+        let (mut going, mut count) = ([0; BLOCK], walks.len());
+        for (i, way) in going.iter_mut().enumerate() {
+            *way = i;
         }
-        walk.weights = walk.weights.map(|weight| weight.max(0.0));
-        let sum: f64 = walk.weights.iter().sum();
-        Place {
-            triangle: walk.triangle,
-            weights: walk.weights.map(|weight| weight / sum),
-            rotation: walk.rotation,
+        let mut left_by = [0; BLOCK];
+        for _ in 0..MOST_EDGES {
+            let mut crossing = 0;
+            for round in 0..count {
+                let way = going[round];
+                let walk = &mut walks[way];
+                let (k, share) = exit(walk.weights, walk.rates, walk.entered);
+                walk.advance(share);
+                // Kept only if the next does not write over it.
+                (going[crossing], left_by[crossing]) = (way, k);
+                crossing += usize::from(share < 1.0);
+            }
+            count = crossing;
+            if count == 0 {
+                break;
+            }
+            for (&way, &k) in going.iter().zip(&left_by).take(count) {
+                let walk = &mut walks[way];
+                walk.weights[k] = 0.0;
+                let edge = 3 * walk.triangle + k as u32;
+                walk.entered = match self.hinges.beside(edge) {
+                    WALL => self.slide(walk, edge),
+                    other => Some(self.cross(walk, edge, other)),
+                };
+            }
         }
     }
 
@@ -131,7 +190,7 @@ impl Domain {
         let along = self.charts[edge as usize / 3].edge(edge as usize % 3);
         let is_forward = walk.left.dot(along) > 0.0;
         let mut left = walk.left.dot(along).abs() / along.length();
-        walk.left = DVec2::ZERO;
+        (walk.left, walk.rates) = (DVec2::ZERO, [0.0; 3]);
         for _ in 0..MOST_EDGES {
             let length = self.charts[edge as usize / 3].edge(edge as usize % 3).length();
             // The walk stands on the edge between `from`, which it leaves, and `to`.
@@ -184,20 +243,18 @@ impl Domain {
 }
 
 /// The edge through which a point leaves a triangle before its barycentric coordinates have changed by `rates`, and the
-/// share of the way to it.
+/// share of the way to it: 1 if it does not leave.
 #[inline]
-fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> Option<(usize, f64)> {
-    let mut found = None;
-    let mut least = 1.0;
-    for k in 0..3 {
-        if Some(k) != entered && weights[k] + rates[k] < 0.0 {
-            let share = weights[k] / -rates[k];
-            if share < least {
-                (found, least) = (Some(k), share);
-            }
-        }
-    }
-    found.map(|k| (k, least))
+fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> (usize, f64) {
+    // All three without a branch, which would be guessed wrong as often as not.
+    let share = |k: usize| match Some(k) != entered && weights[k] + rates[k] < 0.0 {
+        true => weights[k] / -rates[k],
+        false => 1.0,
+    };
+    let shares = [share(0), share(1), share(2)];
+    let first = usize::from(shares[1] < shares[0]);
+    let k = if shares[2] < shares[first] { 2 } else { first };
+    (k, shares[k])
 }
 
 #[cfg(test)]
@@ -220,6 +277,16 @@ mod tests {
         Domain { charts, hinges, fans }
     }
 
+    fn traced(domain: &Domain, vertex: usize, displacement: DVec2) -> Option<Place> {
+        let mut places = [None; BLOCK];
+        domain.trace(vertex, &[displacement], &mut places);
+        places[0]
+    }
+
+    fn place_of(domain: &Domain, vertex: usize, displacement: DVec2) -> Place {
+        traced(domain, vertex, displacement).unwrap()
+    }
+
     fn position(model: &Model, place: &Place) -> DVec3 {
         let corners = model.surface.corners(place.triangle as usize);
         (0..3).map(|k| corners[k] * place.weights[k]).sum()
@@ -232,15 +299,14 @@ mod tests {
         for (v, &from) in model.surface.positions.iter().enumerate() {
             // The tangent planes' axes in space: from the way along each.
             let step = 1e-3;
-            let towards =
-                |direction: DVec2| (position(&model, &domain.trace(v, direction * step).unwrap()) - from) / step;
+            let towards = |direction: DVec2| (position(&model, &place_of(&domain, v, direction * step)) - from) / step;
             for turn in 0..16 {
                 let direction = DVec2::from_angle(TAU * f64::from(turn) / 16.0 + 0.1);
                 let short = towards(direction);
                 if (short.length() - 1.0).abs() > 1e-9 {
                     continue; // along the border
                 }
-                let end = position(&model, &domain.trace(v, direction * 0.3).unwrap());
+                let end = position(&model, &place_of(&domain, v, direction * 0.3));
                 let straight = from + short * 0.3;
                 if straight.x.min(straight.y) > 0.0 && straight.x.max(straight.y) < 1.0 {
                     assert!(end.distance(straight) < 1e-9, "{v}: {end} {straight}");
@@ -255,10 +321,10 @@ mod tests {
         let model = shapes::model(shapes::icosphere(4));
         let domain = domain(&model);
         for v in (0..model.surface.positions.len()).step_by(97) {
-            let place = domain.trace(v, DVec2::from_angle(v as f64) * TAU).unwrap();
+            let place = place_of(&domain, v, DVec2::from_angle(v as f64) * TAU);
             let from = model.surface.positions[v];
             assert!(position(&model, &place).distance(from) < 0.05);
-            let half = domain.trace(v, DVec2::from_angle(v as f64) * PI).unwrap();
+            let half = place_of(&domain, v, DVec2::from_angle(v as f64) * PI);
             assert!(position(&model, &half).distance(-from) < 0.05);
         }
     }
@@ -278,14 +344,12 @@ mod tests {
             let along = domain.charts[edge as usize / 3].edge(edge as usize % 3).normalize();
             let mut walk = Walk {
                 triangle: first / 3,
-                weights: [0.0; 3],
                 left: along * length,
-                rates: [0.0; 3],
-                rotation: DVec2::X,
+                ..Walk::default()
             };
             walk.weights[first as usize % 3] = 1.0;
             domain.slide(&mut walk, edge);
-            let place = domain.walk(walk);
+            let place = walk.end();
             assert!(position(&model, &place).distance(end) < 1e-9, "{length}");
         }
     }
@@ -297,7 +361,7 @@ mod tests {
             let domain = domain(&model);
             for v in 0..model.surface.positions.len() {
                 for length in [1e-9, 0.1, 30.0] {
-                    if let Some(place) = domain.trace(v, DVec2::from_angle(v as f64) * length) {
+                    if let Some(place) = traced(&domain, v, DVec2::from_angle(v as f64) * length) {
                         let sum: f64 = place.weights.iter().sum();
                         assert!(
                             (sum - 1.0).abs() < 1e-12 && place.weights.iter().all(|w| *w >= 0.0),
