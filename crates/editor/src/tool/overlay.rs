@@ -225,7 +225,8 @@ impl Overlay {
         view: &View,
     ) -> Vec<ControlShape> {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
-        let near = |px| control_at(&self.control_points, px, camera, viewport_px);
+        let is_curve = lines.as_ref().is_some_and(|(_, is_curve)| *is_curve);
+        let near = |px| control_at(&self.control_points, is_curve, px, camera, viewport_px);
         self.pointed_control = pointer_px.and_then(near);
         if let Some(point) = self.pointed_control {
             self.control_points[point as usize].is_pointed_at = true;

@@ -83,6 +83,9 @@ const PIN_PX: f64 = 3.2;
 /// The pointer's distance to a point within which it takes the point.
 pub(crate) const GRAB_PX: f64 = 8.0;
 
+/// The same of a curve's points, which are far apart: a press beside one would draw another line.
+const CURVE_GRAB_PX: f64 = 18.0;
+
 /// The shapes: edges, the frames of pinned points, the points' rims, points and selected ones. A curve inside a limb is
 /// visible through it.
 pub(crate) fn control_shapes(
@@ -123,12 +126,22 @@ fn square(position: DVec3, half_px: f64, camera: &Camera, viewport_px: DVec2) ->
     [[a, b, c], [a, c, d]]
 }
 
-/// The point under the pointer: of those near it a visible one, and of these the nearest to the eye.
-pub(crate) fn control_at(points: &[ShownPoint], pointer_px: DVec2, camera: &Camera, viewport_px: DVec2) -> Option<u32> {
+/// The point under the pointer: of those near it a visible one, and of these the nearest to the eye; of a curve's
+/// points the nearest to the pointer.
+pub(crate) fn control_at(
+    points: &[ShownPoint],
+    is_curve: bool,
+    pointer_px: DVec2,
+    camera: &Camera,
+    viewport_px: DVec2,
+) -> Option<u32> {
     let near = points.iter().enumerate().filter_map(|(number, point)| {
-        let at_px = camera.project(point.position, viewport_px)?;
-        let depth = (point.position - camera.eye()).length();
-        (at_px.distance(pointer_px) <= GRAB_PX).then_some((point.is_hidden, depth, number as u32))
+        let distance_px = camera.project(point.position, viewport_px)?.distance(pointer_px);
+        let (reach_px, rank) = match is_curve {
+            true => (CURVE_GRAB_PX, distance_px),
+            false => (GRAB_PX, (point.position - camera.eye()).length()),
+        };
+        (distance_px <= reach_px).then_some((!is_curve && point.is_hidden, rank, number as u32))
     });
     let first = near.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     first.map(|(_, _, number)| number)

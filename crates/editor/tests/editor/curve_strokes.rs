@@ -103,6 +103,19 @@ fn a_spine_runs_through_the_middle_of_the_limb_which_follows_its_end_as_a_chain(
 }
 
 #[test]
+fn a_press_a_little_beside_a_curve_s_point_takes_the_point_and_draws_no_second_line() {
+    let mut rig = tube();
+    stroke(&mut rig, StrokeShape::Spine, 0.4, 0.97);
+    let end_px = px(&rig, *curve(&rig).moved().last().unwrap());
+    let (beside, pull) = (DVec2::new(-9.0, 11.0), DVec2::new(-30.0, -90.0));
+    rig.swipe(&[end_px + beside, end_px + beside + 0.5 * pull, end_px + beside + pull]);
+    rig.drain();
+    assert_eq!(rig.editor.document().handles().len(), 1);
+    let now_px = px(&rig, *curve(&rig).moved().last().unwrap());
+    assert!(now_px.distance(end_px + pull) < 1.0, "{now_px}");
+}
+
+#[test]
 fn a_pinned_point_stays_while_the_end_is_pulled_and_pins_are_undone_and_kept() {
     let mut rig = tube();
     stroke(&mut rig, StrokeShape::Spine, 0.4, 0.97);
