@@ -95,7 +95,7 @@ pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, FoundPlaces,
     HandleEntry, HandleSetup, JoinsFile, KeyEntry, MatchedByPlace, MeshReference, MixEntry, PathEntry, PathPart,
-    Placed, Placement, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept,
+    Placed, Placement, Places, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept,
     VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;

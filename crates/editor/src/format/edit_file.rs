@@ -82,7 +82,7 @@ pub struct EditFile {
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
     /// The mesh whose vertex numbers the edit has, so that another mesh finds its sets by place ([`EditFile::placed`]).
-    pub(super) places: Option<Places>,
+    pub places: Option<Places>,
 }
 
 /// A handle: its vertices and their motion.

@@ -68,6 +68,7 @@ pub use one_shape::refuse_keys;
 pub use path::PathEntry;
 pub(crate) use pivoted::without_pivot;
 pub use placed_edit::{FoundPlaces, MatchedByPlace, Placed};
+pub use places::Places;
 pub use pose::PoseEntry;
 pub use project::{MeshReference, Project, StoredKept, geometry_hash};
 pub use selector::{Axis, Selector};

@@ -8,7 +8,7 @@ const LEAST_SPREAD: f64 = 1e-3;
 /// The value at a point between places, the nearest first, each with its way from the point and its value; a place within
 /// `here` gives its own value.
 ///
-/// It is the value of the linear function that fits best, with the weights ((r − d)/(r d))² of Franke and Little [FN80],
+/// It is the value of the linear function that fits best, with the weights ((r − d)/(r d))² of Franke and Nielson [FN80],
 /// in which d is a place's distance and r the farthest one's. So linear fields are reproduced nearly, each place has its
 /// own value, and a place that enters or leaves the list changes nothing. The result lies between the places' least and
 /// largest values.

@@ -11,7 +11,7 @@ use super::recorded::Recorded;
 const TURN: f64 = 0.025;
 
 /// A vertex is matched by itself if a place is as near as this share of the box's diagonal: the sample's distance where
-/// it is coarse (a 64th of the longest side, in three directions), and the difference of two scans.
+/// it is coarse (a 40th of the longest side, in three directions), and the difference of two scans.
 const NEAR: f64 = 0.05;
 
 /// Vertices further from their place than this share of the box's diagonal are left out.

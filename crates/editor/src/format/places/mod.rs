@@ -19,4 +19,4 @@ mod stored;
 pub(in crate::format) use matched::{Oriented, PlaceTree};
 pub(in crate::format) use recorded::Recorded;
 pub(in crate::format) use sample::{Meaning, Painted, sample};
-pub(in crate::format) use stored::Places;
+pub use stored::Places;

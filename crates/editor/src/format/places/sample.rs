@@ -9,7 +9,7 @@ use super::matched::{Oriented, PlaceTree};
 use super::recorded::Recorded;
 
 /// The places of a whole mesh without sets: one in each cell of this share of the box's longest side, and each side.
-const COARSE: f64 = 1.0 / 64.0;
+const COARSE: f64 = 1.0 / 40.0;
 
 /// Fields are refined to cells this many times finer, each half as long as the one before.
 const REFINED: usize = 4;

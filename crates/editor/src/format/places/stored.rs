@@ -13,7 +13,7 @@ use crate::format::field::lowest_file_vertices;
 /// The mesh that an edit was made on: as much of it as another mesh needs to find the edit's sets.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::format) struct Places {
+pub struct Places {
     /// The number of the file's vertices.
     vertices: u32,
     /// The digest of their numbers and positions.
@@ -98,8 +98,12 @@ fn digest_of_triangles(model: &Model) -> String {
     }
     let numbers = lowest_file_vertices(model);
     let mut hash = Sha256::new();
-    for triangle in &model.surface.triangles {
-        hash.update(triangle.map(|v| numbers[v.index()].to_le_bytes()).as_flattened());
+    for triangle in model.drawn_triangles() {
+        let number = |vertex| match model.drawn.surface_vertex(vertex) {
+            Some(v) => numbers[v.index()],
+            None => u32::MAX,
+        };
+        hash.update(triangle.map(|vertex| number(vertex).to_le_bytes()).as_flattened());
     }
     hexadecimal(hash)
 }
