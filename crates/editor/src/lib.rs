@@ -93,9 +93,10 @@ pub use filter_kind::FilterKind;
 pub use flow_start::FlowStart;
 pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
-    ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, HandleEntry,
-    HandleSetup, JoinsFile, KeyEntry, MeshReference, MixEntry, PathEntry, PathPart, Placement, PoseEntry, Project,
-    Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
+    ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, FoundPlaces,
+    HandleEntry, HandleSetup, JoinsFile, KeyEntry, MatchedByPlace, MeshReference, MixEntry, PathEntry, PathPart,
+    Placed, Placement, Places, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept,
+    VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;
 pub use ground_axis::GroundAxis;

@@ -59,28 +59,9 @@ impl Selector {
         let selected = match self {
             Self::All => vec![true; model.surface.positions.len()],
             Self::None => vec![false; model.surface.positions.len()],
-            Self::Vertices(vertices) => {
-                let count = model.drawn.file_vertex_count();
-                let mut named = vec![false; count];
-                for &vertex in vertices {
-                    let slot = named
-                        .get_mut(vertex as usize)
-                        .ok_or_else(|| no_such_vertex(place, vertex, count))?;
-                    *slot = true;
-                }
-                by_file_vertex(model, &named)
-            }
-            Self::Ranges(ranges) => {
-                let count = model.drawn.file_vertex_count();
-                let mut named = vec![false; count];
-                for &[first, last] in ranges {
-                    let range = first as usize..=last as usize;
-                    named
-                        .get_mut(range)
-                        .ok_or_else(|| no_such_vertex(place, last, count))?
-                        .fill(true);
-                }
-                by_file_vertex(model, &named)
+            Self::Vertices(_) | Self::Ranges(_) => {
+                let named = self.by_number(model.drawn.file_vertex_count(), place)?;
+                by_file_vertex(model, &named.unwrap_or_default())
             }
             Self::Slab { axis, from, to } => by_slab(model, *axis, *from, *to),
             Self::Box { min, max } => by_position(model, |p| min.cmple(p).all() && p.cmple(*max).all()),
@@ -113,14 +94,6 @@ impl Selector {
                 .collect(),
         };
         Ok(Selection { selected })
-    }
-}
-
-fn no_such_vertex(place: &str, vertex: u32, count: usize) -> EditError {
-    EditError::NoSuchVertex {
-        place: place.to_owned(),
-        vertex: vertex.into(),
-        count,
     }
 }
 

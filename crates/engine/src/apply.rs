@@ -288,6 +288,7 @@ fn report(
         handle_residual: solution.handle_residual,
         examples: solution.examples,
         slides: solution.slides,
+        matched_by_place: setup.matched.clone(),
         distortion: Distortion {
             edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
             edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use glam::DVec3;
+use pliant_editor::MatchedByPlace;
 use pliant_mesh::{Model, mean_curvatures, mixed_voronoi_areas};
 use serde::Serialize;
 
@@ -44,6 +45,9 @@ pub struct Report {
     /// The free handles, and how far they slid.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub slides: Vec<HandleSlide>,
+    /// How much of the edit was found by place, if it was made on another mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matched_by_place: Option<MatchedByPlace>,
     /// The distortion of the shape.
     pub distortion: Distortion,
     /// Sentences that a person should know.

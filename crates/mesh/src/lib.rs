@@ -43,6 +43,7 @@ pub mod geometry;
 mod ids;
 mod inspection;
 mod model;
+mod oriented_points;
 mod progress;
 pub mod shapes;
 mod surface;
@@ -68,6 +69,7 @@ pub use geometry::{
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use inspection::{Example, Inspection, LocatedFinding};
 pub use model::{LOOSE_BIT, Model, SurfaceOfFile};
+pub use oriented_points::{NearPoint, OrientedPoints};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
 pub use symmetry::{Counterparts, MirrorPlane, image_of, mirror_planes, symmetry_plane};

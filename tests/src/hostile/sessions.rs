@@ -195,7 +195,10 @@ impl Desk {
             }),
             Kind::Project => Content::Project(Box::new(self.editor.snapshot()?), self.mesh.clone()),
             Kind::Morph => Content::Morph(shape(), self.mesh.clone()),
-            Kind::Edit => Content::Edit(Box::new(self.editor.edit_file().ok()?)),
+            Kind::Edit => {
+                let model = Arc::clone(self.editor.view().model?);
+                Content::Edit(Box::new(self.editor.edit_file().ok()?), model)
+            }
         };
         Some(SaveRequest {
             path: save.path.clone(),

@@ -4,6 +4,7 @@ use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
+use super::placed_edit::MatchedByPlace;
 use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
@@ -39,6 +40,19 @@ impl Beginning {
             Self::Edit(edit) => edit.resolve(model),
             Self::Project(project) => project.resolve(model),
         }
+    }
+
+    /// The same by the numbers of `model`, and how much was found, if it is an edit that was made on another mesh
+    /// ([`EditFile::placed`]).
+    ///
+    /// # Errors
+    /// Those of [`EditFile::placed`].
+    pub fn placed(&self, model: &Model) -> Result<Option<(Self, MatchedByPlace)>, EditError> {
+        let placed = match self {
+            Self::Edit(edit) => edit.placed(model)?,
+            Self::Project(_) => None,
+        };
+        Ok(placed.map(|placed| (Self::from(placed.edit), placed.matched)))
     }
 
     /// Returns true if nothing would move.

@@ -148,6 +148,19 @@ pub enum EditError {
         /// One of them, by the file's number.
         file_vertex: u32,
     },
+    /// An edit of another mesh that lies elsewhere.
+    #[error(
+        "the edit was made on another mesh, and only {found} of {set} is within {within} of this one's surface: move, turn \
+         and scale this file to the place and size of that mesh, or paint anew"
+    )]
+    Elsewhere {
+        /// The handle, or the free region.
+        set: String,
+        /// The share of its places that was found.
+        found: String,
+        /// The distance within which a place counts as found, in world units.
+        within: String,
+    },
     /// More handles than there are numbers.
     #[error("the edit has {0} handles, more than the 65535 that an edit may have: join some of them")]
     TooManyHandles(usize),

@@ -19,11 +19,13 @@ use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
 use super::mix::MixEntry;
 use super::path::PathEntry;
+use super::places::Places;
 use super::pose::PoseEntry;
 use super::project::StoredKept;
 use super::reader::read;
 use super::selector::Selector;
 use super::strength::strength_kind;
+use super::text::text_of;
 use super::transform::optional_vector;
 use super::version::{EDIT_VERSION, check_version};
 use crate::HandleTransform;
@@ -79,6 +81,8 @@ pub struct EditFile {
     /// The distance within which the mesh's vertices are joined before it is bent, in world units, at least 0; with
     /// `None` it follows from the mesh ([`pliant_mesh::WeldOptions`]).
     pub weld: Option<f64>,
+    /// The mesh whose vertex numbers the edit has, so that another mesh finds its sets by place ([`EditFile::placed`]).
+    pub places: Option<Places>,
 }
 
 /// A handle: its vertices and their motion.
@@ -160,6 +164,8 @@ struct StoredEdit {
     mix: Option<MixEntry>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weld: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    places: Option<Places>,
 }
 
 /// The behaviour of the loose parts of a selection.
@@ -217,6 +223,7 @@ impl Default for EditFile {
             path: None,
             mix: None,
             weld: None,
+            places: None,
         }
     }
 }
@@ -328,6 +335,7 @@ impl EditFile {
             path: stored.path,
             mix: stored.mix,
             weld: stored.weld,
+            places: stored.places,
         })
     }
 
@@ -365,13 +373,14 @@ impl EditFile {
             path: self.path.clone(),
             mix: self.mix.clone(),
             weld: self.weld,
+            places: self.places.clone(),
         };
         json!(stored)
     }
 
     /// The edit as JSON text with a newline at its end.
     pub fn to_json(&self) -> String {
-        format!("{:#}\n", self.to_value())
+        text_of(&self.to_value())
     }
 
     /// Returns true if no handle of the edit, no control point moved by hand and no example's weight moves anything, or

@@ -12,7 +12,6 @@ use super::examples::entries_of;
 use super::path::PathEntry;
 use super::pivoted::{with_pivot, without_pivot};
 use super::project::StoredKept;
-use super::selector::ranges_of;
 use crate::document::{
     Content, Document, FREE_BEND_DEG, Handle, HandleId, HandleLine, Paint, PivotPlace, Reach, followed,
 };
@@ -66,18 +65,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         &pliant_mesh::Cancel::new(),
     )
     .unwrap_or_else(|_| Region::still(document.paint.len()));
-    let ranges = |role: Role| {
-        let mut selected = vec![false; model.drawn.file_vertex_count()];
-        for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
-            if surface_vertex.is_some_and(|vertex| region.roles[vertex.index()] == role) {
-                selected[file_vertex.index()] = true;
-            }
-        }
-        match ranges_of(&selected) {
-            ranges if ranges.is_empty() => Selector::None,
-            ranges => Selector::Ranges(ranges),
-        }
-    };
+    let ranges = |role: Role| Selector::of_surface(model, |vertex| region.roles[vertex.index()] == role);
     let parent_place = |parent: Option<HandleId>| {
         let place = region.handles.iter().position(|id| Some(*id) == parent)?;
         Some(place as u32)
@@ -147,6 +135,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         path: document.animation().path().map(|path| PathEntry::of(path)),
         mix: None,
         weld: model.weld.distance,
+        places: None,
     };
     let setup = edit.resolve(model)?;
     let differing = setup
@@ -163,6 +152,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
 
 /// A document from an edit: every vertex's role in the edit is painted.
 pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditError> {
+    let placed = edit.placed(model)?;
+    let edit = placed.as_ref().map_or(edit, |placed| &placed.edit);
     let in_full = EditFile {
         strength: 1.0,
         ..edit.clone()

@@ -1,14 +1,16 @@
-//! A number painted on the surface, in an edit: selections with a value each, the later one having priority. A
+//! A number painted on the surface, in an edit: selections with a value each, or numbers of vertices, the later one having priority. A
 //! stiffness may be "rigid" instead of a number, which is infinity here: JSON has none.
 
 use std::ops::RangeInclusive;
 
-use pliant_mesh::Model;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use pliant_mesh::{Model, SurfaceVertex};
 use serde::ser::SerializeSeq;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::edit_error::EditError;
-use super::selector::Selector;
+use super::selector::{Selector, ranges_of};
 
 /// A part of a painted field.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -17,6 +19,15 @@ pub enum FieldEntry {
     /// The whole field: one value for each of the file's vertices. Welded twins take the value of the one with the
     /// lowest number.
     PerVertex(#[serde(serialize_with = "write_all")] Vec<f64>),
+    /// Values of some of the file's vertices; welded twins take the value of the one with the lowest number.
+    #[serde(untagged)]
+    Some {
+        /// First and last of runs of vertices, ascending.
+        ranges: Vec<[u32; 2]>,
+        /// Their values.
+        #[serde(rename = "f64_base64", serialize_with = "write_base64")]
+        values: Vec<f64>,
+    },
     /// One value on a selection.
     #[serde(untagged)]
     Select {
@@ -35,17 +46,19 @@ struct StoredEntry {
     select: Option<Selector>,
     value: Option<Value>,
     per_vertex: Option<Vec<Value>>,
+    ranges: Option<Vec<[u32; 2]>>,
+    f64_base64: Option<String>,
 }
 
 /// A number, or the word for infinity.
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number or \"rigid\"")]
 enum Value {
     Number(f64),
     Word(Word),
 }
 
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Word {
     Rigid,
@@ -80,10 +93,46 @@ fn write_all<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::
     list.end()
 }
 
+fn write_base64<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    STANDARD.encode(bytes).serialize(serializer)
+}
+
+/// The entry with these runs of vertices and the numbers of their values.
+fn some(ranges: Vec<[u32; 2]>, text: &str) -> Result<FieldEntry, &'static str> {
+    let bytes = STANDARD
+        .decode(text)
+        .map_err(|_| "has `f64_base64` that is not base64: export the edit again")?;
+    let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_le_bytes);
+    let values: Vec<f64> = bytes.chunks_exact(8).map(number).collect();
+    let are_runs = ranges.iter().all(|[first, last]| first <= last) && ranges.is_sorted_by(|a, b| a[1] < b[0]);
+    let count: u64 = ranges
+        .iter()
+        .map(|[first, last]| u64::from(last.saturating_sub(*first)) + 1)
+        .sum();
+    match are_runs && bytes.len() as u64 == 8 * count {
+        true => Ok(FieldEntry::Some { ranges, values }),
+        false => {
+            Err("has `ranges` that do not ascend or do not fit the numbers in `f64_base64`: export the edit again")
+        }
+    }
+}
+
 impl TryFrom<StoredEntry> for FieldEntry {
     type Error = &'static str;
 
     fn try_from(stored: StoredEntry) -> Result<Self, &'static str> {
+        match (stored.ranges, stored.f64_base64) {
+            (None, None) => {}
+            (Some(ranges), Some(text))
+                if (&stored.per_vertex, &stored.select, &stored.value) == (&None, &None, &None) =>
+            {
+                return some(ranges, &text);
+            }
+            (Some(_), Some(_)) => return Err("has `ranges` beside another member than `f64_base64`: keep one of them"),
+            (Some(_), None) => return Err("lacks its member `f64_base64`: add it"),
+            (None, Some(_)) => return Err("lacks its member `ranges`: add it"),
+        }
         match (stored.per_vertex, stored.select, stored.value) {
             (Some(values), None, None) => Ok(Self::PerVertex(values.into_iter().map(Value::number).collect())),
             (Some(_), Some(_), _) => Err("has both `per_vertex` and `select`: keep one of them"),
@@ -137,10 +186,15 @@ impl FieldKind {
                     .check()
                     .map_err(|error| error.under("select"))
                     .and_then(|()| self.check(*value).map_err(|error| error.under("value"))),
-                FieldEntry::PerVertex(values) => {
+                FieldEntry::PerVertex(values) | FieldEntry::Some { values, .. } => {
+                    let member = if matches!(entry, FieldEntry::Some { .. }) {
+                        "f64_base64"
+                    } else {
+                        "per_vertex"
+                    };
                     let refused = values.iter().enumerate().find_map(|(vertex, value)| {
                         let refused = self.check(*value).err()?;
-                        Some(refused.under(&format!("per_vertex[{vertex}]")))
+                        Some(refused.under(&format!("{member}[{vertex}]")))
                     });
                     refused.map_or(Ok(()), Err)
                 }
@@ -164,6 +218,62 @@ impl FieldEntry {
         Self::PerVertex(values)
     }
 
+    /// The values at surface vertices, for all of the file's vertices behind them.
+    pub(crate) fn of_vertices(model: &Model, value: impl Fn(SurfaceVertex) -> Option<f64>) -> Self {
+        let mut values = vec![None; model.drawn.file_vertex_count()];
+        for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
+            if let Some(vertex) = surface_vertex {
+                values[file_vertex.index()] = value(vertex);
+            }
+        }
+        let has_value: Vec<bool> = values.iter().map(Option::is_some).collect();
+        Self::Some {
+            ranges: ranges_of(&has_value),
+            values: values.into_iter().flatten().collect(),
+        }
+    }
+
+    /// The same entry without the vertices that have the value `default` in any case, in fewer bytes.
+    pub(crate) fn compact(&self, default: f64) -> Self {
+        let Self::PerVertex(values) = self else {
+            return self.clone();
+        };
+        let is_painted: Vec<bool> = values.iter().map(|value| *value != default).collect();
+        Self::Some {
+            ranges: ranges_of(&is_painted),
+            values: values.iter().copied().filter(|value| *value != default).collect(),
+        }
+    }
+
+    /// The value of each of the file's `count` vertices that has one here; a selection gives none.
+    ///
+    /// # Errors
+    /// Other numbers of vertices; `place` is the entry's.
+    pub(crate) fn numbered(&self, count: usize, place: &str) -> Result<Vec<Option<f64>>, EditError> {
+        match self {
+            Self::PerVertex(values) if values.len() == count => Ok(values.iter().copied().map(Some).collect()),
+            Self::PerVertex(values) => Err(EditError::FieldLength {
+                place: format!("{place}.per_vertex"),
+                found: values.len(),
+                count,
+            }),
+            Self::Some { ranges, values } => {
+                let mut numbered = vec![None; count];
+                let vertices = ranges.iter().flat_map(|[first, last]| *first..=*last);
+                for (vertex, value) in vertices.zip(values) {
+                    let slot = numbered.get_mut(vertex as usize);
+                    *slot.ok_or_else(|| EditError::NoSuchVertex {
+                        place: format!("{place}.ranges"),
+                        vertex: vertex.into(),
+                        count,
+                    })? = Some(*value);
+                }
+                Ok(numbered)
+            }
+            Self::Select { .. } => Ok(vec![None; count]),
+        }
+    }
+
     /// Paints the entry, which is number `index` of the edit's member `member`, on a field over the surface's vertices.
     pub(crate) fn paint(&self, field: &mut [f64], model: &Model, member: &str, index: usize) -> Result<(), EditError> {
         match self {
@@ -173,14 +283,10 @@ impl FieldEntry {
                     field[vertex.index()] = *value;
                 }
             }
-            Self::PerVertex(values) => {
-                let (found, count) = (values.len(), model.drawn.file_vertex_count());
-                if found != count {
-                    let place = format!("{member}[{index}].per_vertex");
-                    return Err(EditError::FieldLength { place, found, count });
-                }
-                for (vertex, file_vertex) in lowest_file_vertices(model).into_iter().enumerate() {
-                    field[vertex] = values[file_vertex as usize];
+            Self::PerVertex(_) | Self::Some { .. } => {
+                let numbered = self.numbered(model.drawn.file_vertex_count(), &format!("{member}[{index}]"))?;
+                for (own, file_vertex) in field.iter_mut().zip(lowest_file_vertices(model)) {
+                    *own = numbered[file_vertex as usize].unwrap_or(*own);
                 }
             }
         }

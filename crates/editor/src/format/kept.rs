@@ -136,6 +136,20 @@ impl StoredKept {
         })
     }
 
+    /// The same with its fields on another mesh; `other` gets each with its name.
+    pub(crate) fn with_fields(
+        self,
+        other: impl Fn(&Field, &str) -> Result<Option<Field>, EditError>,
+    ) -> Result<Self, EditError> {
+        let field =
+            |field: &Option<Field>, name| Ok(field.as_ref().map(|field| other(field, name)).transpose()?.flatten());
+        Ok(Self {
+            shape: field(&self.shape, "kept: shape")?,
+            corrections: field(&self.corrections, "kept: corrections")?,
+            ..self
+        })
+    }
+
     /// The same as a shape that `method` has made.
     pub(crate) fn by(self, method: &Method) -> Self {
         Self {

@@ -11,6 +11,7 @@ use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::{EditFile, HandleEntry};
 use super::pivoted::with_pivot;
+use super::placed_edit::MatchedByPlace;
 use super::pose::Limbs;
 use super::selector::Selector;
 use crate::bending::{Kept, Targets};
@@ -52,6 +53,8 @@ pub struct Setup {
     pub rest: Option<Rest>,
     /// The kept visible shape, if it differs from the solution for the handles' transforms.
     pub kept: Option<Kept>,
+    /// How much of the edit was found by place, if it was made on another mesh.
+    pub matched: Option<MatchedByPlace>,
 }
 
 /// A rest shape.
@@ -155,14 +158,16 @@ impl Setup {
                 .to_go_on_from()
                 .and_then(|kept| Kept::of(&kept, region.handles.iter().copied())),
             rest,
+            matched: None,
         }
     }
 
-    /// The sentences of a binding's warnings, with the handles' names.
+    /// The sentences of a binding's warnings, with the handles' names, after the one about the edit's places.
     pub fn worded(&self, warnings: &[Warning]) -> Vec<String> {
         let name = |number: usize| self.handles.get(number).map(|handle| &*handle.name);
         let sentence = |warning: &Warning| worded(warning, warning.handle().and_then(name));
-        warnings.iter().map(sentence).collect()
+        let matched = self.matched.iter().map(MatchedByPlace::sentence);
+        matched.chain(warnings.iter().map(sentence)).collect()
     }
 
     /// The examples of the method, if some were brought.
@@ -292,10 +297,16 @@ impl EditFile {
     ///
     /// # Errors
     /// A vertex or component that the model does not have, a handle that selects nothing, a vertex in two handles, a
-    /// stiffness field of a wrong length.
+    /// stiffness field of a wrong length; on another mesh than its own those of [`EditFile::placed`].
     pub fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         if self.handles.len() > usize::from(u16::MAX) {
             return Err(EditError::TooManyHandles(self.handles.len()));
+        }
+        if let Some(placed) = self.placed(model)? {
+            return Ok(Setup {
+                matched: Some(placed.matched),
+                ..placed.edit.resolve(model)?
+            });
         }
         let poses = self.handles.iter().enumerate();
         let limbs = Limbs::of(
@@ -384,6 +395,7 @@ impl EditFile {
             attachments: self.attachments_on(model)?,
             kept: self.kept_on(model)?,
             rest: None,
+            matched: None,
         })
     }
 

@@ -53,23 +53,11 @@ impl Field {
         })
     }
 
-    /// Gives every stored vertex and its numbers to `take`.
-    ///
-    /// # Errors
-    /// A vertex that the file does not have, too many or too few numbers, or a NaN.
-    fn read<const N: usize>(
-        &self,
-        name: &str,
-        model: &Model,
-        is_number: impl Fn(f64) -> bool,
-        mut take: impl FnMut(SurfaceVertex, [f64; N]),
-    ) -> Result<(), EditError> {
+    /// The stored numbers, in the order of the vertices.
+    fn stored<const N: usize>(&self, name: &str) -> Result<Vec<[f64; N]>, EditError> {
         let bytes = STANDARD
             .decode(&self.f64_base64)
             .map_err(|error| EditError::Project(format!("`{name}` is not base64 ({error}): save it again")))?;
-        let mut numbers = bytes
-            .chunks_exact(8)
-            .map(|bytes| bytes.try_into().map_or(f64::NAN, f64::from_le_bytes));
         let stored: u64 = self
             .vertices
             .iter()
@@ -82,8 +70,50 @@ impl Field {
                 8 * N
             )));
         }
+        let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_le_bytes);
+        let each = bytes.chunks_exact(8 * N).map(|bytes| {
+            let mut numbers = bytes.chunks_exact(8).map(number);
+            std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN))
+        });
+        Ok(each.collect())
+    }
+
+    /// The numbers of each of `count` drawn vertices, 0 where none are stored.
+    ///
+    /// # Errors
+    /// A vertex that is not among them, too many or too few numbers, or one that is not finite.
+    pub(super) fn by_number<const N: usize>(&self, name: &str, count: usize) -> Result<Vec<[f64; N]>, EditError> {
+        let stored = self.stored::<N>(name)?;
+        let mut all = vec![[0.0; N]; count];
+        let vertices = self.vertices.iter().flat_map(|[first, last]| *first..=*last);
+        for (vertex, numbers) in vertices.zip(stored) {
+            let slot = all.get_mut(vertex as usize);
+            match slot.filter(|_| numbers.iter().all(|number| number.is_finite())) {
+                Some(slot) => *slot = numbers,
+                None => {
+                    return Err(EditError::Project(format!(
+                        "`{name}` does not fit its mesh: export the edit again"
+                    )));
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// Gives every stored vertex and its numbers to `take`.
+    ///
+    /// # Errors
+    /// A vertex that the file does not have, too many or too few numbers, or a NaN.
+    fn read<const N: usize>(
+        &self,
+        name: &str,
+        model: &Model,
+        is_number: impl Fn(f64) -> bool,
+        mut take: impl FnMut(SurfaceVertex, [f64; N]),
+    ) -> Result<(), EditError> {
+        let mut numbers = self.stored::<N>(name)?.into_iter();
         for_each_drawn(&self.vertices, name, model, |vertex| {
-            let values = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
+            let values = numbers.next().unwrap_or([f64::NAN; N]);
             match vertex {
                 _ if !values.iter().all(|number| is_number(*number)) => Err(EditError::Project(format!(
                     "`{name}` has a number that is not finite: save it again"

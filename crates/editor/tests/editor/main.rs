@@ -30,6 +30,7 @@ mod memory_limit;
 mod mesh_changes;
 mod mesh_picks;
 mod objects;
+mod places;
 mod pose;
 mod poses;
 mod project;

@@ -141,6 +141,28 @@ impl Bvh {
         best.map(|(distance, triangle)| (triangle, distance))
     }
 
+    /// The distance from `point` to the nearest triangle that is not farther than `limit` and whose normal is less than a
+    /// right angle from `normal`; every triangle counts if that is 0.
+    pub fn distance_to_facing(&self, point: DVec3, normal: DVec3, limit: f64) -> Option<f64> {
+        let in_boxes = self.space.of_point(point);
+        let mut best: Option<f64> = None;
+        self.walk(
+            |span| span.distance(in_boxes),
+            |place| {
+                let corners = self.leaves.corners[place].map(|v| self.positions.get(v.index()));
+                let [a, b, c] = corners;
+                if normal == DVec3::ZERO || (b - a).cross(c - a).dot(normal) > 0.0 {
+                    let distance = distance_to_triangle(point, corners);
+                    if distance <= best.unwrap_or(limit) {
+                        best = Some(distance);
+                    }
+                }
+                best.unwrap_or(limit) * self.space.scale
+            },
+        );
+        best
+    }
+
     /// Visits the triangles' places in every leaf whose box has a `bound` (infinite means never) up to the limit,
     /// nearer boxes first; `visit` returns the new limit.
     fn walk(&self, bound: impl Fn(&Span) -> f64, mut visit: impl FnMut(usize) -> f64) {

@@ -276,7 +276,7 @@ fn purpose(content: &Content) -> Purpose {
         Content::Model(_) => Purpose::SaveAs,
         Content::Morph(..) => Purpose::SaveMorph,
         Content::Project(..) => Purpose::SaveProject,
-        Content::Edit(_) => Purpose::ExportEdit,
+        Content::Edit(..) => Purpose::ExportEdit,
         Content::Animation(_) => Purpose::ExportAnimation,
         Content::Frames(_) => Purpose::ExportFrames,
         Content::Picture(_) => Purpose::SavePicture(PictureKind {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Dye, EditFile, SaveMark, Snapshot};
+use pliant_mesh::Model as Mesh;
 use pliant_render::Image;
 
 use super::in_file::SavedShape;
@@ -51,8 +52,8 @@ pub enum Content {
     Project(Box<Snapshot>, RestMesh),
     /// The mesh at rest with its bent shape as a morph target.
     Morph(Shape, RestMesh),
-    /// An edit for the command line.
-    Edit(Box<EditFile>),
+    /// An edit for the command line, and the model whose vertex numbers it has.
+    Edit(Box<EditFile>, Arc<Mesh>),
     /// The edit over time.
     Animation(Box<AnimationToWrite>),
     /// The frames of a sequence.
@@ -189,7 +190,7 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&animation.mesh),
-            Self::Frames(_) | Self::Edit(_) | Self::Picture(_) => None,
+            Self::Frames(_) | Self::Edit(..) | Self::Picture(_) => None,
         }
     }
 
@@ -198,7 +199,7 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&mut animation.mesh),
-            Self::Frames(_) | Self::Edit(_) | Self::Picture(_) => None,
+            Self::Frames(_) | Self::Edit(..) | Self::Picture(_) => None,
         }
     }
 

@@ -145,7 +145,12 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
                 WrittenKind::Picture,
             ))
         }
-        Content::Edit(edit) => {
+        Content::Edit(edit, model) => {
+            let edit = edit.with_places(model).map_err(|source| EngineError::Edit {
+                edit: path.clone(),
+                source,
+            })?;
+            cancel.check().map_err(|_| EngineError::Interrupted)?;
             let text = edit.to_json();
             let staged = staging.stage([(path.clone(), text.as_bytes())])?;
             Ok(Ready::new(staged, WrittenKind::Edit))

@@ -1,5 +1,6 @@
 //! The open file, and the jobs that load and save it.
 
+mod clause;
 mod following;
 mod frames;
 mod open_file;

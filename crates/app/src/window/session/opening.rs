@@ -7,6 +7,7 @@ use glam::DVec3;
 use pliant_editor::{Animation, Beginning, SavedAs, Snapshot};
 use pliant_mesh::WeldOptions;
 
+use super::clause::as_sentence;
 use crate::files::names::saved_name;
 use crate::window::files::in_file::SavedShape;
 use crate::window::files::project_file;
@@ -153,6 +154,14 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             let mut read = pliant_engine::read_edit(edit, watch)?;
             let loaded = pliant_engine::load(file, &read.weld_options(), watch)?;
             examples::bring(&mut read, edit, &loaded, watch)?;
+            let placed = read.placed(&loaded.model).map_err(|source| EngineError::Edit {
+                edit: edit.clone(),
+                source,
+            })?;
+            if let Some((other, matched)) = placed {
+                notes.push(as_sentence(&matched.sentence()));
+                read = other;
+            }
             beginning = Some(read);
             (loaded, Some(file.clone()), MeshSource::File(file.clone()))
         }

@@ -9,6 +9,7 @@ use pliant_engine::watch::Watch;
 use pliant_engine::{EngineError, Loaded, memory};
 use pliant_picture::drawing::Drawing;
 
+use super::clause::as_sentence;
 use crate::window::files::in_file::InFile;
 use crate::window::files::other_shape::OtherShape;
 use crate::window::files::rest_mesh::{MeshSource, RestMesh};
@@ -81,7 +82,7 @@ fn make(
     let loaded = Arc::new(loaded);
     let notes = std::iter::once(done).chain(warnings).chain(mesh.lost().iter().cloned());
     Ok(Box::new(Stitched {
-        notes: notes.map(|note| sentence(&note)).collect(),
+        notes: notes.map(|note| as_sentence(&note)).collect(),
         left_open,
         shape: OtherShape {
             morph_targets: loaded.scene.morph_targets(),
@@ -94,12 +95,4 @@ fn make(
         },
         mesh,
     }))
-}
-
-/// A clause as a sentence.
-fn sentence(clause: &str) -> String {
-    let mut letters = clause.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    let end = if clause.ends_with('.') { "" } else { "." };
-    first.chain(letters).chain(end.chars()).collect()
 }

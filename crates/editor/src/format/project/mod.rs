@@ -32,6 +32,7 @@ use self::handle::StoredHandle;
 use self::objects::{StoredObject, StoredSmallParts, access, stored_objects};
 use self::poses::StoredPose;
 use super::attachment::{read_stored_attachments, stored_attachments};
+use super::digest::hexadecimal;
 use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
@@ -173,17 +174,6 @@ pub fn geometry_hash(model: &Model) -> String {
         hash.update(vertex.0.to_le_bytes());
     }
     hexadecimal(hash)
-}
-
-/// `sha256:` and the digest of bytes.
-pub fn digest(bytes: &[u8]) -> String {
-    hexadecimal(Sha256::new_with_prefix(bytes))
-}
-
-fn hexadecimal(hash: Sha256) -> String {
-    let digest = hash.finalize();
-    let digits = digest.iter().map(|byte| format!("{byte:02x}"));
-    format!("sha256:{}", digits.collect::<String>())
 }
 
 impl Project {
