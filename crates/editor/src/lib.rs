@@ -114,7 +114,8 @@ pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{
-    BodyMotion, FollowedFrame, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline, Timeline, middle_of,
+    BodyMotion, FollowedFrame, FollowedHandle, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline,
+    Timeline, middle_of,
 };
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

@@ -21,6 +21,7 @@ mod frame_work;
 mod frames;
 mod freedom;
 mod handle_values;
+mod handle_ways;
 mod handles;
 mod key_work;
 mod keys;

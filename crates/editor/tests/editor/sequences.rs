@@ -8,8 +8,11 @@ use std::sync::Arc;
 use crate::rig::{CENTRE_PX, Fingerprint, Rig};
 use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::Role;
-use pliant_editor::{Beginning, Command, Event, HandleId, HandlePlace, HandleTransform, KeyId, ToolMode};
-use pliant_mesh::{Drawn, shapes};
+use pliant_editor::{
+    Beginning, Command, Event, FollowedFrame, FollowedHandle, HandleId, HandlePlace, HandleTransform, KeyId, ToolMode,
+    middle_of,
+};
+use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 /// The number of frames.
 pub const COUNT: usize = 40;
@@ -41,6 +44,38 @@ pub fn deliver(rig: &mut Rig) {
         rig.send(Event::Frame(wanted, Ok(shape)));
     }
     rig.drain();
+}
+
+/// The shape in a frame.
+pub fn shape(rig: &Rig, number: usize) -> Vec<DVec3> {
+    let file = rig.model.surface.positions.iter();
+    file.zip(&**frame(rig, number))
+        .map(|(place, way)| *place + *way)
+        .collect()
+}
+
+/// Follows the body and the handles through the sequence, and reads the frames that are wanted then.
+pub fn follow(rig: &mut Rig) {
+    assert!(rig.editor.view().wants_following);
+    let following = rig.editor.following();
+    let file = &rig.model.surface.positions;
+    let of_frame = |number: usize| {
+        let shape = shape(rig, number);
+        let at = |vertices: &[SurfaceVertex], positions: &[DVec3]| -> Vec<DVec3> {
+            vertices.iter().map(|vertex| positions[vertex.index()]).collect()
+        };
+        let handles = following.handles.iter();
+        FollowedFrame {
+            middle: middle_of(&shape),
+            handles: handles
+                .map(|(_, vertices)| FollowedHandle::of(&at(vertices, file), &at(vertices, &shape)))
+                .collect(),
+        }
+    };
+    let frames = (0..COUNT).map(of_frame).collect();
+    rig.send(Event::Followed(following, Ok(frames)));
+    deliver(rig);
+    assert!(!rig.editor.view().wants_following);
 }
 
 pub fn go_to(rig: &mut Rig, frame: usize) {

@@ -8,7 +8,7 @@ use pliant_editor::{FollowedFrame, Following, middle_of};
 use pliant_io::Format;
 use pliant_mesh::Drawn;
 
-use super::bend::place;
+use super::bend::followed;
 use super::cache::Cache;
 use super::folder::Folder;
 use super::morphs::Morphs;
@@ -146,16 +146,10 @@ impl OpenSequence {
             let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
             let first = &self.mesh.model.surface.positions;
             let handles = following.handles.iter();
-            let shape = |number: &usize| -> Vec<DVec3> {
-                let (_, vertices) = &following.handles[*number];
-                vertices.iter().map(|vertex| positions[vertex.index()]).collect()
-            };
+            let handles = handles.map(|(_, vertices)| followed(vertices, first, &positions));
             Ok(FollowedFrame {
                 middle: middle_of(&positions),
-                places: handles
-                    .map(|(_, vertices)| place(vertices, first, &positions))
-                    .collect(),
-                shapes: following.shaped.iter().map(shape).collect(),
+                handles: handles.collect(),
             })
         };
         side_by_side(&frames, of_frame, watch)
