@@ -9,6 +9,7 @@ use super::edit_file::EditFile;
 use super::filters::FilterEntry;
 use super::footprints::FootprintEntry;
 use super::keys::{CurveKey, KeyEntry};
+use super::mix::MixEntry;
 use super::pivoted::{pivoted, without_pivot};
 use super::setup::Setup;
 use crate::HandleTransform;
@@ -85,6 +86,13 @@ pub(super) fn footprints(document: &Document, handles: &[HandleId]) -> Vec<Footp
     let footprints = document.animation().footprints();
     let entry = |id: &HandleId| Some(FootprintEntry::of(&document.handle(*id)?.name, footprints.get(id)?));
     handles.iter().filter_map(entry).collect()
+}
+
+/// The sequence that leads the document's handles that are in the edit.
+pub(super) fn mix(document: &Document, handles: &[HandleId]) -> Option<MixEntry> {
+    let mix = document.animation().mix()?;
+    let name = |id: HandleId| Some(document.handle(id).filter(|_| handles.contains(&id))?.name.clone());
+    MixEntry::of(mix, name)
 }
 
 /// Gives a document of the edit the edit's keys, and moves its handles to their positions at time 0.

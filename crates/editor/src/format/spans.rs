@@ -140,7 +140,7 @@ impl EditFile {
             spans,
             shifts: self.shifts(&names, place)?,
             led,
-            strength: self.strength,
+            strength: self.strength * self.mix.as_ref().map_or(1.0, |mix| mix.share),
         })
     }
 

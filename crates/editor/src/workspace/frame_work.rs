@@ -9,6 +9,7 @@ use super::body_way::BodyWay;
 use super::filter_work::FilterWork;
 use super::footprint_work::FootprintWork;
 use super::handle_ways::HandleWays;
+use super::mix_work::MixWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -33,6 +34,8 @@ pub(crate) struct FrameWork {
     pub(super) filters: FilterWork,
     /// The footprints of handles.
     pub(super) footprints: FootprintWork,
+    /// The places to which another sequence leads handles.
+    pub(super) mix: MixWork,
     /// True if not all frames could be read.
     pub(super) has_failed: bool,
 }

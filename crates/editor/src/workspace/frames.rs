@@ -105,7 +105,7 @@ impl Workspace {
     pub(crate) fn show_wanted_frame(&mut self) {
         let Some(wanted) = self.frames.wanted else { return };
         self.follow_filters();
-        if self.frame_to_read().is_some() || self.awaits_handles() {
+        if self.frame_to_read().is_some() || self.awaits_handles() || self.awaits_mix(wanted) {
             return;
         }
         let Some((_, shape)) = self.frames.read.take_if(|(frame, _)| *frame == wanted) else {
@@ -133,7 +133,7 @@ impl Workspace {
         self.follow_filters();
         let (frame, shape) = (self.document.animation().frame(), Arc::clone(&self.document.rest));
         self.note_handles(frame, &shape);
-        match self.unknown_frame(frame).is_none() && !self.awaits_handles() {
+        match self.unknown_frame(frame).is_none() && !self.awaits_handles() && !self.awaits_mix(frame) {
             true => self.put_frame(frame, &shape),
             false if self.frames.wanted.is_none() => {
                 self.frames.wanted = Some(frame);
@@ -178,6 +178,12 @@ impl Workspace {
                     true => Some(*own),
                     false => self.frames.places.get(&key)?.get(&handle.id).copied(),
                 };
+                let mix = document.animation().mix();
+                let paint = document.versions().of(Aspect::Paint);
+                let led = mix.and_then(|mix| Some((self.frames.mix.place(handle.id, frame, (paint, mix))?, mix)));
+                if let Some((led, mix)) = led {
+                    return own.transform_to(led, mix.share, pivot);
+                }
                 let transform = transform_at(document.animation(), handle, (frame, own, pivot), place_at);
                 match self.frames.filters.shift(handle.id, frame) {
                     DVec3::ZERO => transform,
