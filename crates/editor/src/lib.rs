@@ -95,7 +95,8 @@ pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, HandleEntry,
     HandleSetup, JoinsFile, KeyEntry, MeshReference, MixEntry, PathEntry, PathPart, Placement, PoseEntry, Project,
-    Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
+    Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, SequenceEdit, Setup, StoredKept, VelocityEntry, digest, geometry_hash,
+    refuse_keys,
 };
 pub use former::Former;
 pub use ground_axis::GroundAxis;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
 use crate::document::{Animation, HandleFilter, HandleFootprints, HandleId, HandleMix};
+use crate::warning::in_window_words;
 use crate::workspace::{bend_path, free_path, set_filter, set_footprints, set_mix};
 
 /// Shows or hides the path of a sequence's body.
@@ -86,6 +87,7 @@ pub(super) const SET_FOOTPRINTS: Entry<(HandleId, Option<HandleFootprints>)> = E
             .or_else(|| state.gone(*id))
             .or_else(|| keyed_or_filtered(animation, *id))
             .or_else(|| led(animation, *id))
+            .or_else(|| takes_no_places(state))
             .or(unless(are_usable, unusable))
     },
     action: Action::Do(|context, (id, footprints)| set_footprints(context.workspace, id, footprints)),
@@ -109,6 +111,12 @@ pub(super) const SET_MIX: Entry<Option<HandleMix>> = Entry {
     },
     action: Action::Do(|context, mix| set_mix(context.workspace, mix)),
 };
+
+/// The reason if the method can't hold each vertex of a handle at its own place.
+fn takes_no_places(state: &State<'_>) -> Option<Reason> {
+    let refusal = HandleFootprints::refusal_by(state.workspace.document.method())?;
+    Some(in_window_words(&format!("{refusal}.")).into())
+}
 
 /// The reason if a key or a filter moves a handle.
 fn keyed_or_filtered(animation: &Animation, id: HandleId) -> Option<Reason> {

@@ -19,6 +19,26 @@ impl HandleMix {
     /// The least and the largest share.
     pub const SHARE_RANGE: std::ops::RangeInclusive<f64> = 0.0..=1.0;
 
+    /// The same that leads this handle, too.
+    #[must_use]
+    pub fn with(&self, handle: HandleId) -> Self {
+        let handles = self.handles.iter().copied().chain([handle]);
+        Self {
+            handles: handles.collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same that does not lead this handle.
+    #[must_use]
+    pub fn without(&self, handle: HandleId) -> Self {
+        let handles = self.handles.iter().copied().filter(|own| *own != handle);
+        Self {
+            handles: handles.collect(),
+            ..self.clone()
+        }
+    }
+
     /// Returns true if it leads this handle.
     pub fn leads(&self, handle: HandleId) -> bool {
         self.handles.contains(&handle)

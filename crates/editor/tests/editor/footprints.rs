@@ -145,3 +145,21 @@ fn nothing_else_moves_a_held_handle_and_edits_and_projects_have_its_footprints()
             .is_some()
     );
 }
+
+#[test]
+fn a_method_that_moves_handles_as_a_whole_is_refused_when_it_is_chosen() {
+    let (mut rig, id) = held();
+    for declaration in pliant_deform::METHODS {
+        let (name, method) = (declaration.name, (declaration.first_choice)());
+        let takes_places = method.takes_places();
+        let why_not = rig.editor.unavailable_because(&Command::SetMethod(method.clone()));
+        assert_eq!(why_not.is_none(), takes_places, "{name}: {why_not:?}");
+        rig.command(Command::SetFootprints(id, None));
+        rig.command(Command::SetMethod(method));
+        let why_not = rig.editor.unavailable_because(&Command::SetFootprints(id, Some(ALL)));
+        assert_eq!(why_not.is_none(), takes_places, "{name}: {why_not:?}");
+        rig.undo();
+        rig.undo();
+        assert_eq!(rig.editor.document().animation().footprints()[&id], ALL);
+    }
+}

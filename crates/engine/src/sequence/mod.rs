@@ -4,6 +4,7 @@
 //! Frames are read, solved, written and dropped, as many at a time as the pool has threads, so that a sequence need not
 //! fit into memory. No frame depends on another one's solution.
 
+mod applied;
 mod bend;
 mod cache;
 mod folder;

@@ -146,6 +146,10 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
             ))
         }
         Content::Edit(edit) => {
+            let mut edit = (**edit).clone();
+            if let Some(mix) = &mut edit.mix {
+                mix.sequence = project_file::relative(Path::new(&mix.sequence), files::folder_of(path));
+            }
             let text = edit.to_json();
             let staged = staging.stage([(path.clone(), text.as_bytes())])?;
             Ok(Ready::new(staged, WrittenKind::Edit))
