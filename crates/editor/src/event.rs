@@ -89,6 +89,9 @@ pub enum Event {
     /// A frame of the sequence was read: the displacements of its surface vertices from the file's shape, or the reason
     /// why it can't be shown, in one sentence.
     Frame(usize, Result<Arc<Vec<DVec3>>, String>),
+    /// A frame of the other sequence that leads handles, by the sequence's name and its number: the displacements of its
+    /// surface vertices from the file's shape, or the reason why it can't be read, in one sentence.
+    MixFrame(String, usize, Result<Arc<Vec<DVec3>>, String>),
     /// All frames of the sequence were followed, as [`SceneView::wants_following`](crate::SceneView::wants_following)
     /// asks, with the handles of [`Editor::following`](crate::Editor::following), or the reason why they can't be, in one sentence.
     Followed(Following, Result<Vec<FollowedFrame>, String>),

@@ -83,8 +83,8 @@ pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
     Access, Animation, BodyPath, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid,
     HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleFilter, HandleFootprints, HandleId, HandleLine,
-    HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace, Pose, Reach,
-    SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
+    HandleMix, HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace,
+    Pose, Reach, SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;
@@ -95,8 +95,8 @@ pub use format::{
     Accuracy, AttachmentEntry, Axis, Beginning, DyeEntry, EDIT_VERSION, EditError, EditFile, ExampleEntry,
     ExampleSource, ExportError, FieldEntry, FilterEntry, FlowFile, FlowMotion, FootprintEntry, FoundPlaces,
     HandleEntry, HandleSetup, JoinsFile, KeyEntry, MatchedByPlace, MeshReference, MixEntry, PathEntry, PathPart,
-    Placed, Placement, Places, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, StoredKept,
-    VelocityEntry, digest, geometry_hash, refuse_keys,
+    Placed, Placement, Places, PoseEntry, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, SequenceEdit, Setup,
+    StoredKept, VelocityEntry, digest, geometry_hash, refuse_keys,
 };
 pub use former::Former;
 pub use ground_axis::GroundAxis;
@@ -115,7 +115,8 @@ pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{
-    BodyMotion, FollowedFrame, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline, Timeline, middle_of,
+    BodyMotion, FollowedFrame, FollowedHandle, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline,
+    Timeline, middle_of,
 };
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

@@ -104,6 +104,9 @@ pub struct SceneView<'a> {
     /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
     /// awaited.
     pub wanted_frame: Option<usize>,
+    /// The other sequence that leads handles, and the frame of it that must be read next
+    /// ([`Event::MixFrame`](crate::Event::MixFrame)); `None` if none is awaited.
+    pub wanted_mix: Option<(&'a str, usize)>,
     /// True if all frames of a sequence must be read and followed ([`Event::Followed`](crate::Event::Followed)).
     pub wants_following: bool,
     /// The frame of the body's path under the pointer.

@@ -100,7 +100,7 @@ impl EditJob<'_> {
 pub(crate) fn with_keys(edit: &Beginning) -> Result<&EditFile, EngineError> {
     match edit {
         Beginning::Edit(edit) => Ok(edit),
-        Beginning::Project(_) => Err(EngineError::Arguments(
+        Beginning::Sequence(_) | Beginning::Project(_) => Err(EngineError::Arguments(
             "--edit: a project can't be animated: export its edit from the window, and give that".to_owned(),
         )),
     }

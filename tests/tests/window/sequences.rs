@@ -24,15 +24,15 @@ use pliant_tests::{Folder, largest_distance, open as open_mesh, run};
 /// The number of frames.
 const COUNT: usize = 12;
 
-/// Writes the frames of a ball that turns and wanders.
-fn frames(folder: &Path) {
+/// Writes the frames of a ball that turns and wanders, by a number of times the usual angle.
+fn frames(folder: &Path, times: f64) {
     std::fs::create_dir(folder).unwrap();
     let ball = shapes::icosphere(2);
     for frame in 0..COUNT {
         let t = frame as f64 / COUNT as f64;
         let mut text = String::new();
         for position in &ball.positions {
-            let p = DQuat::from_rotation_y(t) * *position * (1.0 + 0.05 * t * (5.0 * position.y).sin());
+            let p = DQuat::from_rotation_y(times * t) * *position * (1.0 + 0.05 * t * (5.0 * position.y).sin());
             let p = p + DVec3::new(0.3 * t, 0.0, 0.1 * t);
             writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
         }
@@ -102,7 +102,7 @@ fn by_command(sequence: &Path, edit: &Path, output: &Path) {
 fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     let folder = Folder::new();
     let walk = folder.at("walk");
-    frames(&walk);
+    frames(&walk, 1.0);
     let before = bytes(&walk);
     let Some(mut session) = open(&walk) else { return };
     command(
@@ -199,4 +199,73 @@ fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     assert!(largest_distance(&session.shape(), &eighth) < 1e-12);
     assert!(!session.harness.state().editor().view().unsaved);
     assert!(bytes(&walk) == before, "no frame was written over");
+}
+
+#[test]
+fn another_sequence_leads_a_handle_live_in_the_export_and_in_a_project() {
+    let folder = Folder::new();
+    let [walk, run] = ["walk", "run"].map(|name| folder.at(name));
+    frames(&walk, 1.0);
+    frames(&run, 2.0);
+    let Some(mut session) = open(&walk) else { return };
+    command(
+        &mut session,
+        Command::SetMethod(Method::from_name("bilaplacian").unwrap()),
+    );
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + egui::vec2(0.0, 6.0), top + egui::vec2(0.0, 16.0));
+    command(&mut session, Command::GoToTime(6.0 / 24.0));
+    let own = session.shape();
+    // A sequence with another number of frames is refused, and changes nothing.
+    let short = folder.at("short");
+    frames(&short, 2.0);
+    std::fs::remove_file(short.join("ball-0.obj")).unwrap();
+    session.harness.state_mut().mix_with(&short.join("ball-3.obj"));
+    session.settle();
+    let said = session.harness.state().headline().unwrap_or_default().to_owned();
+    assert!(said.contains("has 11 frames") && said.contains("has 12"), "{said}");
+    assert_eq!(document(&session).animation().mix(), None);
+    session.harness.state_mut().mix_with(&run.join("ball-3.obj"));
+    session.settle();
+    let led = session.shape();
+    let mix = (**document(&session).animation().mix().unwrap()).clone();
+    assert!(mix.leads(document(&session).handles()[0].id));
+    command(
+        &mut session,
+        Command::SetMix(Some(pliant_editor::HandleMix { share: 0.5, ..mix })),
+    );
+    let half = session.shape();
+    assert!(largest_distance(&led, &own) > 1.5 * largest_distance(&half, &own));
+    // The command line's files for the exported edit are the same to the byte, and the shown frame is the written one.
+    let edit = session.harness.state().editor().edit_file().unwrap();
+    let edit = folder.write("edit.json", edit.to_json());
+    let [ours, theirs] = ["ours", "theirs"].map(|name| folder.at(name));
+    session.harness.state_mut().export_frames(&ours);
+    session.settle();
+    by_command(&walk, &edit, &theirs);
+    assert!(bytes(&ours) == bytes(&theirs));
+    let written = open_mesh(&ours.join("ball-6.obj")).model.rest_positions();
+    let view = session.harness.state().editor().view();
+    let mut shown = Vec::new();
+    view.model.unwrap().drawn_positions(view.displacements, &mut shown);
+    let away = largest_distance(&written, &shown);
+    assert!(away < 1e-9, "{away}");
+    // A project names the other sequence, relative to itself, and says so if it is gone.
+    let project = folder.at("led.pliant");
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    let text = std::fs::read_to_string(&project).unwrap();
+    assert!(text.contains("\"sequence\": \"run\""), "{text}");
+    let animation = document(&session).animation().clone();
+    drop(session);
+    let mut session = open(&project).unwrap();
+    session.settle();
+    assert_eq!(*document(&session).animation(), animation);
+    assert!(largest_distance(&session.shape(), &half) < 1e-12);
+    drop(session);
+    std::fs::rename(&run, folder.at("elsewhere")).unwrap();
+    let mut session = open(&project).unwrap();
+    session.settle();
+    let problem = session.harness.state().editor().view().problem.map(str::to_owned);
+    assert!(problem.is_some_and(|problem| problem.contains("run")));
 }

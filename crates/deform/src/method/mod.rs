@@ -67,6 +67,11 @@ impl Method {
         }
     }
 
+    /// Returns true if the vertices of handles can have places of their own ([`crate::Target::Places`]).
+    pub fn takes_places(&self) -> bool {
+        self.0.takes_places()
+    }
+
     /// The power of the Laplacian of the ordering's graph, if it needs one.
     pub fn ordering_power(&self) -> Option<u32> {
         self.needs().ordering_power()

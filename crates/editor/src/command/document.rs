@@ -2,8 +2,10 @@
 
 use super::entry::{Action, Entry, Scope, ctrl, item, unless, when_open};
 use super::shortcut::Shortcut;
+use crate::document::HandleFootprints;
 use crate::input::{Key, Modifiers};
 use crate::jobs::JobKind;
+use crate::warning::in_window_words;
 use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method, set_strength};
 use pliant_deform::{Loose, Method};
 
@@ -149,7 +151,11 @@ pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
 pub(super) const SET_METHOD: Entry<Method> = Entry {
     listed: &[],
     scope: Scope::Document,
-    unavailable: when_open,
+    unavailable: |state, method| {
+        let has_footprints = !state.workspace.document.animation().footprints().is_empty();
+        let refusal = HandleFootprints::refusal_by(method).filter(|_| has_footprints);
+        when_open(state, method).or_else(|| Some(in_window_words(&format!("{}.", refusal?)).into()))
+    },
     action: Action::Do(|context, method| set_method(context.workspace, method)),
 };
 

@@ -14,8 +14,8 @@ use super::{
 };
 use crate::cut::KeptSide;
 use crate::document::{
-    FlowOptions, HandleFilter, HandleFootprints, HandleId, HandleTransform, KeyId, ObjectAction, Paint, PivotPlace,
-    Reach, SmallParts, Tips,
+    FlowOptions, HandleFilter, HandleFootprints, HandleId, HandleMix, HandleTransform, KeyId, ObjectAction, Paint,
+    PivotPlace, Reach, SmallParts, Tips,
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
@@ -188,6 +188,8 @@ commands! {
     SetFilter(handle: HandleId, filter: Option<HandleFilter>) = ways::SET_FILTER;
     /// Holds a handle of a sequence wherever it rests on the ground, or no longer.
     SetFootprints(handle: HandleId, footprints: Option<HandleFootprints>) = ways::SET_FOOTPRINTS;
+    /// Lets another sequence lead handles, or none.
+    SetMix(mix: Option<HandleMix>) = ways::SET_MIX;
     /// Sets a key of every handle at the shown moment.
     KeyHere = animation::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
-use crate::document::{HandleFilter, HandleFootprints, HandleId};
-use crate::workspace::{bend_path, free_path, set_filter, set_footprints};
+use crate::document::{Animation, HandleFilter, HandleFootprints, HandleId, HandleMix};
+use crate::warning::in_window_words;
+use crate::workspace::{bend_path, free_path, set_filter, set_footprints, set_mix};
 
 /// Shows or hides the path of a sequence's body.
 pub(super) const TOGGLE_PATH: Entry<()> = Entry {
@@ -59,16 +60,14 @@ pub(super) const SET_FILTER: Entry<(HandleId, Option<HandleFilter>)> = Entry {
     unavailable: |state, (id, filter)| {
         let count = state.workspace.document.animation().frames().unwrap_or_default();
         let is_usable = filter.is_none_or(|filter| filter.is_usable(count));
-        let has_footprints = state.workspace.document.animation().footprints().contains_key(id);
-        let is_held = "Footprints hold this handle: remove them first.";
-        let is_free = !has_footprints || filter.is_none();
-        no_sequence(state)
-            .or_else(|| state.gone(*id))
-            .or(unless(is_free, is_held))
-            .or(unless(
-                is_usable,
-                "A filter has frames of the sequence, a width of .1 to 1000 and an amount of 0 to 10.",
-            ))
+        let is_moved = filter.and_then(|_| {
+            let animation = state.workspace.document.animation();
+            held_by_footprints(animation, *id).or_else(|| led(animation, *id))
+        });
+        no_sequence(state).or_else(|| state.gone(*id)).or(is_moved).or(unless(
+            is_usable,
+            "A filter has frames of the sequence, a width of .1 to 1000 and an amount of 0 to 10.",
+        ))
     },
     action: Action::Do(|context, (id, filter)| set_filter(context.workspace, id, filter)),
 };
@@ -81,20 +80,63 @@ pub(super) const SET_FOOTPRINTS: Entry<(HandleId, Option<HandleFootprints>)> = E
         if footprints.is_none() {
             return no_sequence(state);
         }
-        let document = &state.workspace.document;
-        let animation = document.animation();
-        let is_keyed = animation.keys().iter().any(|key| key.has(*id));
-        let is_moved = is_keyed || animation.filters().contains_key(id);
-        let moved = "A key or a filter moves this handle: remove it first, or paint another handle.";
+        let animation = state.workspace.document.animation();
         let are_usable = footprints.is_none_or(|footprints| footprints.are_usable());
         let unusable = "The height and the speed of footprints are above 0.";
         no_sequence(state)
             .or_else(|| state.gone(*id))
-            .or(unless(!is_moved, moved))
+            .or_else(|| keyed_or_filtered(animation, *id))
+            .or_else(|| led(animation, *id))
+            .or_else(|| takes_no_places(state))
             .or(unless(are_usable, unusable))
     },
     action: Action::Do(|context, (id, footprints)| set_footprints(context.workspace, id, footprints)),
 };
+
+/// Lets another sequence lead handles, or none.
+pub(super) const SET_MIX: Entry<Option<HandleMix>> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, mix| {
+        let animation = state.workspace.document.animation();
+        let of_handle =
+            |id: &HandleId| keyed_or_filtered(animation, *id).or_else(|| held_by_footprints(animation, *id));
+        let handles = || mix.iter().flat_map(|mix| &mix.handles);
+        let is_share = mix
+            .as_ref()
+            .is_none_or(|mix| HandleMix::SHARE_RANGE.contains(&mix.share));
+        no_sequence(state)
+            .or_else(|| handles().find_map(of_handle))
+            .or(unless(is_share, "The share of a mix is from 0 to 1."))
+    },
+    action: Action::Do(|context, mix| set_mix(context.workspace, mix)),
+};
+
+/// The reason if the method can't hold each vertex of a handle at its own place.
+fn takes_no_places(state: &State<'_>) -> Option<Reason> {
+    let refusal = HandleFootprints::refusal_by(state.workspace.document.method())?;
+    Some(in_window_words(&format!("{refusal}.")).into())
+}
+
+/// The reason if a key or a filter moves a handle.
+fn keyed_or_filtered(animation: &Animation, id: HandleId) -> Option<Reason> {
+    let is_keyed = animation.keys().iter().any(|key| key.has(id));
+    let is_moved = is_keyed || animation.filters().contains_key(&id);
+    let moved = "A key or a filter moves this handle: remove it first, or paint another handle.";
+    unless(!is_moved, moved)
+}
+
+/// The reason if footprints hold a handle.
+fn held_by_footprints(animation: &Animation, id: HandleId) -> Option<Reason> {
+    let is_held = animation.footprints().contains_key(&id);
+    unless(!is_held, "Footprints hold this handle: remove them first.")
+}
+
+/// The reason if another sequence leads a handle.
+fn led(animation: &Animation, id: HandleId) -> Option<Reason> {
+    let is_led = animation.mix().is_some_and(|mix| mix.leads(id));
+    unless(!is_led, "Another sequence leads this handle: choose its own way first.")
+}
 
 /// The reason if no sequence is open.
 fn no_sequence(state: &State<'_>) -> Option<Reason> {

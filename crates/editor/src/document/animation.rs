@@ -8,6 +8,7 @@ use super::handle::{Handle, HandleId};
 use super::handle_curve::HandleCurve;
 use super::handle_filter::HandleFilter;
 use super::handle_footprints::HandleFootprints;
+use super::handle_mix::HandleMix;
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -34,6 +35,8 @@ pub struct Animation {
     pub(super) filters: Arc<BTreeMap<HandleId, HandleFilter>>,
     /// The handles that are held wherever they rest on the ground.
     pub(super) footprints: Arc<BTreeMap<HandleId, HandleFootprints>>,
+    /// The sequence that leads handles; `None` if none does.
+    pub(super) mix: Option<Arc<HandleMix>>,
 }
 
 /// The positions of handles at a moment. Handles that it does not name pass by on the way to keys of their own.
@@ -97,6 +100,7 @@ impl Default for Animation {
             path: None,
             filters: Arc::default(),
             footprints: Arc::default(),
+            mix: None,
         }
     }
 }
@@ -118,6 +122,7 @@ impl Animation {
             path: None,
             filters: Arc::default(),
             footprints: Arc::default(),
+            mix: None,
         };
         keys.into_iter().for_each(|key| animation.put(key));
         animation

@@ -10,6 +10,7 @@ use super::body_path::BodyPath;
 use super::handle::HandleId;
 use super::handle_filter::HandleFilter;
 use super::handle_footprints::HandleFootprints;
+use super::handle_mix::HandleMix;
 use crate::ground_axis::GroundAxis;
 
 impl Animation {
@@ -132,12 +133,26 @@ impl Animation {
         }
     }
 
-    /// Drops the keys of handles with footprints, which nothing else moves.
-    pub(crate) fn drop_keys_of_footprints(&mut self) {
-        let held: BTreeSet<KeyId> = self
-            .ids()
-            .filter(|id| self.footprints.contains_key(&id.handle))
-            .collect();
+    /// The sequence that leads handles; `None` if none does.
+    pub fn mix(&self) -> Option<&Arc<HandleMix>> {
+        self.mix.as_ref()
+    }
+
+    /// The same animation with another sequence that leads handles, or with none.
+    pub(crate) fn with_mix(&self, mix: Option<HandleMix>) -> Self {
+        Self {
+            mix: mix.filter(|mix| !mix.handles.is_empty()).map(Arc::new),
+            ..self.clone()
+        }
+    }
+
+    /// Drops the keys of handles that nothing else moves: those with footprints, and those that another sequence leads.
+    pub(crate) fn drop_useless_keys(&mut self) {
+        let is_held = |id: &KeyId| {
+            let is_led = self.mix.as_ref().is_some_and(|mix| mix.leads(id.handle));
+            is_led || self.footprints.contains_key(&id.handle)
+        };
+        let held: BTreeSet<KeyId> = self.ids().filter(is_held).collect();
         self.take(&held);
     }
 }

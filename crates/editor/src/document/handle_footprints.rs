@@ -1,5 +1,7 @@
 //! The footprints of a handle of a sequence: it is held wherever it rests on the ground.
 
+use pliant_deform::{Method, Remedy};
+
 use crate::ground_axis::GroundAxis;
 
 /// The conditions under which a handle rests on the ground.
@@ -16,6 +18,17 @@ pub struct HandleFootprints {
 }
 
 impl HandleFootprints {
+    /// The reason, in the words of the edit format, why a method can't hold handles by footprints.
+    pub(crate) fn refusal_by(method: &Method) -> Option<String> {
+        (!method.takes_places()).then(|| {
+            format!(
+                "`{}` moves a handle as a whole, and footprints hold each of its vertices at a place: take {}",
+                method.name(),
+                Remedy::TakingPlaces
+            )
+        })
+    }
+
     /// Returns true if an edit may have them.
     pub(crate) fn are_usable(&self) -> bool {
         [self.height, self.speed]

@@ -149,6 +149,10 @@ impl Editor {
                 self.view.look.timeline = true;
             }
             Event::Frame(frame, shape) => self.workspace.take_frame(frame, shape),
+            Event::MixFrame(sequence, frame, shape) => {
+                let shape = shape.as_ref().map(|shape| shape.as_slice()).map_err(String::clone);
+                self.workspace.take_mix_frame(&sequence, frame, shape);
+            }
             Event::Followed(following, frames) => self.workspace.take_followed(&following, frames),
             Event::Stitched(result) => {
                 self.abort_gesture();

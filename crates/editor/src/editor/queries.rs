@@ -80,6 +80,7 @@ impl Editor {
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
             wanted_frame: workspace.frame_to_read(),
+            wanted_mix: workspace.mix_to_read(),
             wants_following: gesture.is_none() && workspace.wants_following(&view.look),
             pointed_frame: self.overlay.pointed_frame,
             world_camera: view.world_camera(),

@@ -7,13 +7,15 @@ use super::json::parse;
 use super::placed_edit::MatchedByPlace;
 use super::project::StoredKept;
 use crate::document::Document;
-use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
+use crate::{Camera, EditError, EditFile, ExampleEntry, Project, SequenceEdit, Setup};
 
 /// The regions, handles and options of the beginning.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Beginning {
     /// An edit, which fits any mesh.
     Edit(Box<EditFile>),
+    /// An edit of a sequence, whose mesh was one of its frames.
+    Sequence(Box<SequenceEdit>),
     /// A project, which belongs to one mesh.
     Project(Box<Project>),
 }
@@ -38,6 +40,7 @@ impl Beginning {
     pub fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         match self {
             Self::Edit(edit) => edit.resolve(model),
+            Self::Sequence(own) => own.edit.resolve(model),
             Self::Project(project) => project.resolve(model),
         }
     }
@@ -50,7 +53,8 @@ impl Beginning {
     pub fn placed(&self, model: &Model) -> Result<Option<(Self, MatchedByPlace)>, EditError> {
         let placed = match self {
             Self::Edit(edit) => edit.placed(model)?,
-            Self::Project(_) => None,
+            // An edit of a sequence is made from an edit that fits its mesh already.
+            Self::Sequence(_) | Self::Project(_) => None,
         };
         Ok(placed.map(|placed| (Self::from(placed.edit), placed.matched)))
     }
@@ -59,6 +63,7 @@ impl Beginning {
     pub fn changes_nothing(&self) -> bool {
         match self {
             Self::Edit(edit) => edit.changes_nothing(),
+            Self::Sequence(own) => own.edit.changes_nothing(),
             Self::Project(project) => project.changes_nothing(),
         }
     }
@@ -67,6 +72,7 @@ impl Beginning {
     pub fn method_name(&self) -> &str {
         match self {
             Self::Edit(edit) => edit.method.name(),
+            Self::Sequence(own) => own.edit.method.name(),
             Self::Project(project) => project.method_name(),
         }
     }
@@ -75,6 +81,9 @@ impl Beginning {
     pub fn weld_options(&self) -> WeldOptions {
         match self {
             Self::Edit(edit) => WeldOptions { distance: edit.weld },
+            Self::Sequence(own) => WeldOptions {
+                distance: own.edit.weld,
+            },
             Self::Project(project) => project.weld_options(),
         }
     }
@@ -84,7 +93,8 @@ impl Beginning {
     pub fn attachment_files(&self) -> Vec<(&'static str, String)> {
         match self {
             Self::Edit(edit) => edit.attachment_files(),
-            Self::Project(_) => Vec::new(),
+            // Inputs beside handles fit only one frame.
+            Self::Sequence(_) | Self::Project(_) => Vec::new(),
         }
     }
 
@@ -92,7 +102,7 @@ impl Beginning {
     pub fn examples_mut(&mut self) -> impl Iterator<Item = &mut ExampleEntry> {
         let edit = match self {
             Self::Edit(edit) => Some(edit),
-            Self::Project(_) => None,
+            Self::Sequence(_) | Self::Project(_) => None,
         };
         edit.into_iter().flat_map(|edit| edit.examples_mut())
     }
@@ -104,7 +114,7 @@ impl Beginning {
     pub fn bring(&mut self, name: &'static str, mesh: (Vec<DVec3>, Vec<[u32; 3]>)) -> Result<(), EditError> {
         match self {
             Self::Edit(edit) => edit.bring(name, mesh),
-            Self::Project(_) => Ok(()),
+            Self::Sequence(_) | Self::Project(_) => Ok(()),
         }
     }
 
@@ -116,6 +126,7 @@ impl Beginning {
                 edit.method = method;
                 edit.kept = edit.kept.take().and_then(StoredKept::for_another_method);
             }
+            Self::Sequence(own) => own.edit.method = method,
             Self::Project(project) => project.set_method(&method),
         }
     }
@@ -123,13 +134,14 @@ impl Beginning {
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
             Self::Edit(edit) => super::exchange::import(edit, model),
+            Self::Sequence(own) => own.document(model),
             Self::Project(project) => project.shown_document(model),
         }
     }
 
     pub(crate) fn camera(&self) -> Option<Camera> {
         match self {
-            Self::Edit(_) => None,
+            Self::Edit(_) | Self::Sequence(_) => None,
             Self::Project(project) => project.camera(),
         }
     }
@@ -144,5 +156,11 @@ impl From<EditFile> for Beginning {
 impl From<Project> for Beginning {
     fn from(project: Project) -> Self {
         Self::Project(Box::new(project))
+    }
+}
+
+impl From<SequenceEdit> for Beginning {
+    fn from(edit: SequenceEdit) -> Self {
+        Self::Sequence(Box::new(edit))
     }
 }

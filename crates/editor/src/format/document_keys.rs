@@ -9,6 +9,7 @@ use super::edit_file::EditFile;
 use super::filters::FilterEntry;
 use super::footprints::FootprintEntry;
 use super::keys::{CurveKey, KeyEntry};
+use super::mix::MixEntry;
 use super::pivoted::{pivoted, without_pivot};
 use super::setup::Setup;
 use crate::HandleTransform;
@@ -87,6 +88,24 @@ pub(super) fn footprints(document: &Document, handles: &[HandleId]) -> Vec<Footp
     handles.iter().filter_map(entry).collect()
 }
 
+/// The sequence that leads the document's handles that are in the edit.
+pub(super) fn mix(document: &Document, handles: &[HandleId]) -> Option<MixEntry> {
+    let mix = document.animation().mix()?;
+    let name = |id: HandleId| Some(document.handle(id).filter(|_| handles.contains(&id))?.name.clone());
+    MixEntry::of(mix, name)
+}
+
+/// The position of a handle by a key's transform about this pivot.
+pub(super) fn placed(transform: HandleTransform, pivot: DVec3) -> Placed {
+    let transform = without_pivot(transform);
+    let turn_deg = match transform {
+        HandleTransform::Trs { rotation, .. } => followed(DVec3::ZERO, rotation),
+        HandleTransform::Matrix(_) => DVec3::ZERO,
+    };
+    let stance = Stance { transform, turn_deg };
+    Placed { stance, pivot }
+}
+
 /// Gives a document of the edit the edit's keys, and moves its handles to their positions at time 0.
 ///
 /// # Errors
@@ -100,13 +119,7 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
     let share_at = |time: f64| edit.part_before_keys() * timeline.strength_at(time);
     let placed = |handle: usize, transform: &HandleTransform, time: f64| {
         let pivot = transform.pivot_or(setup.handles[handle].pivot);
-        let transform = without_pivot(transform.part(share_at(time), pivot));
-        let turn_deg = match transform {
-            HandleTransform::Trs { rotation, .. } => followed(DVec3::ZERO, rotation),
-            HandleTransform::Matrix(_) => DVec3::ZERO,
-        };
-        let stance = Stance { transform, turn_deg };
-        Placed { stance, pivot }
+        placed(transform.part(share_at(time), pivot), pivot)
     };
     let keys = edit.timed_keys(setup)?.into_iter().map(|key| {
         let handles = key.handles.iter();

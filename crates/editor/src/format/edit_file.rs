@@ -295,6 +295,7 @@ impl EditFile {
         check_filters(&stored.filter)?;
         check_footprints(&stored.footprints)?;
         stored.path.as_ref().map_or(Ok(()), PathEntry::check)?;
+        stored.mix.as_ref().map_or(Ok(()), MixEntry::check)?;
         if let Some(weld) = stored.weld {
             WELD.check(weld).map_err(|error| error.under("weld"))?;
         }

@@ -133,7 +133,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         filter: document_keys::filters(document, &region.handles),
         footprints: document_keys::footprints(document, &region.handles),
         path: document.animation().path().map(|path| PathEntry::of(path)),
-        mix: None,
+        mix: document_keys::mix(document, &region.handles),
         weld: model.weld.distance,
         places: None,
     };

@@ -12,7 +12,7 @@ use super::keys::KeyEntry;
 use super::selector::Selector;
 use super::setup::Setup;
 use crate::HandleTransform;
-use crate::document::SplitTransform;
+use crate::document::{HandleFootprints, SplitTransform};
 use crate::timeline::{HandlePlace, SequenceTimeline, Span, SpanKey, filter_shifts};
 use crate::warning::shortened;
 
@@ -140,15 +140,21 @@ impl EditFile {
             spans,
             shifts: self.shifts(&names, place)?,
             led,
-            strength: self.strength,
+            strength: self.strength * self.mix.as_ref().map_or(1.0, |mix| mix.share),
         })
     }
 
     /// The footprints, each with the number of its handle.
     ///
     /// # Errors
-    /// A name that no handle has, or that two handles have; a handle that a key, a filter or another footprint moves too.
+    /// A method that moves handles as a whole; a name that no handle has, or that two handles have; a handle that a key, a
+    /// filter or another footprint moves too.
     pub fn footprints_of_handles(&self) -> Result<Vec<(usize, &FootprintEntry)>, EditError> {
+        let refusal = HandleFootprints::refusal_by(&self.method).filter(|_| !self.footprints.is_empty());
+        if let Some(sentence) = refusal {
+            let place = "footprints".to_owned();
+            return Err(EditError::Other { place, sentence });
+        }
         let names = self.names();
         let mut found: Vec<(usize, &FootprintEntry)> = Vec::new();
         for (place, footprint) in self.footprints.iter().enumerate() {

@@ -11,8 +11,6 @@ use crate::document::{HandleId, Version};
 pub struct Following {
     /// The vertices of each, of which there is one at least.
     pub handles: Vec<(HandleId, Vec<SurfaceVertex>)>,
-    /// The numbers of those whose vertices' positions are wanted, too.
-    pub shaped: Vec<usize>,
     /// The paint that makes these handles.
     pub(crate) paint: Version,
 }
@@ -22,8 +20,26 @@ pub struct Following {
 pub struct FollowedFrame {
     /// The middle of its surface vertices, in world space.
     pub middle: DVec3,
-    /// The places of the followed handles, in their order.
-    pub places: Vec<HandlePlace>,
-    /// The positions of the vertices of the handles for which these are wanted.
-    pub shapes: Vec<Vec<DVec3>>,
+    /// The followed handles, in their order.
+    pub handles: Vec<FollowedHandle>,
+}
+
+/// A handle in one frame: all that filters need of it, and all by which its footprints are found. Its vertices are not
+/// kept, because the frames of a long sequence need not fit into memory.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct FollowedHandle {
+    /// Its place.
+    pub place: HandlePlace,
+    /// The lowest coordinate of its vertices along each axis, in world space.
+    pub lowest: DVec3,
+}
+
+impl FollowedHandle {
+    /// The handle whose vertices are at `first` in the first frame and at `now` in this one. Both have at least one entry.
+    pub fn of(first: &[DVec3], now: &[DVec3]) -> Self {
+        Self {
+            place: HandlePlace::of(first, now),
+            lowest: now.iter().fold(DVec3::INFINITY, |lowest, place| lowest.min(*place)),
+        }
+    }
 }

@@ -17,7 +17,7 @@ mod spline;
 mod track;
 
 pub(crate) use self::filter::filter_shifts;
-pub use self::followed::{FollowedFrame, Following};
+pub use self::followed::{FollowedFrame, FollowedHandle, Following};
 pub use self::footprints::Footprints;
 pub(crate) use self::frame_pose::{frames_that_reach, transform_at};
 pub use self::middle::middle_of;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::interpolation::between;
 use super::middle::middle_of;
-use crate::document::SplitTransform;
+use crate::document::{HandleTransform, SplitTransform};
 use crate::ease::Ease;
 
 /// The axes in which a key's transform stays the same from frame to frame. Its pivot always rides along with the handle.
@@ -60,9 +60,23 @@ impl HandlePlace {
 
     /// A share of the rigid motion from here to another place of the handle.
     fn way_to(&self, other: &Self, share: f64) -> DAffine3 {
-        let turn = DQuat::IDENTITY.slerp((other.rotation * self.rotation.inverse()).normalize(), share);
+        let turn = self.turn_to(other, share);
         let centre = self.centre.lerp(other.centre, share);
         DAffine3::from_rotation_translation(turn, centre - turn * self.centre)
+    }
+
+    /// The same motion as a handle's transform about its pivot.
+    pub(crate) fn transform_to(&self, other: &Self, share: f64, pivot: DVec3) -> HandleTransform {
+        HandleTransform::Trs {
+            translation: self.way_to(other, share).transform_point3(pivot) - pivot,
+            rotation: self.turn_to(other, share),
+            scale: DVec3::ONE,
+            pivot: None,
+        }
+    }
+
+    fn turn_to(&self, other: &Self, share: f64) -> DQuat {
+        DQuat::IDENTITY.slerp((other.rotation * self.rotation.inverse()).normalize(), share)
     }
 
     /// A direction in the handle's axes, in world space.

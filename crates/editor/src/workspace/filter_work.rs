@@ -1,19 +1,18 @@
-//! The handles of a sequence followed through all frames, and the shifts of those whose ways are filtered.
+//! The shifts of the handles of a sequence whose ways are filtered, once the handles were followed.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::handle_ways::HandleWays;
 use crate::document::{Handle, HandleFilter, HandleId, Version};
-use crate::timeline::{FollowedFrame, Following, HandlePlace, filter_shifts};
+use crate::timeline::{HandlePlace, filter_shifts};
 
-/// The handles followed through all frames, and the shifts of those with filters.
+/// The shifts of handles by their filters.
 #[derive(Debug, Default)]
 pub(crate) struct FilterWork {
-    /// The places of handles in each frame, and the paint that makes them.
-    places: Option<(Version, Vec<BTreeMap<HandleId, HandlePlace>>)>,
-    /// The shifts by the filters, by frame.
+    /// By frame.
     shifts: BTreeMap<HandleId, BTreeMap<usize, DVec3>>,
     /// The paint, the filters and the parents for which they were computed.
     of: Option<Source>,
@@ -23,21 +22,6 @@ pub(crate) struct FilterWork {
 type Source = (Version, Arc<BTreeMap<HandleId, HandleFilter>>, Vec<Option<HandleId>>);
 
 impl FilterWork {
-    /// Returns true if the places of the handles that this paint makes are known.
-    pub(super) fn knows(&self, paint: Version) -> bool {
-        self.places.as_ref().is_some_and(|(of, _)| *of == paint)
-    }
-
-    /// Takes the places of handles in all frames.
-    pub(super) fn take(&mut self, following: &Following, frames: &[FollowedFrame]) {
-        let of_frame = |frame: &FollowedFrame| {
-            let ids = following.handles.iter().map(|(id, _)| *id);
-            ids.zip(frame.places.iter().copied()).collect()
-        };
-        self.places = Some((following.paint, frames.iter().map(of_frame).collect()));
-        self.of = None;
-    }
-
     /// The shift of a handle in a frame.
     pub(super) fn shift(&self, handle: HandleId, frame: usize) -> DVec3 {
         let shifts = self.shifts.get(&handle);
@@ -47,9 +31,10 @@ impl FilterWork {
             .unwrap_or_default()
     }
 
-    /// Computes the shifts for these filters and handles.
+    /// Computes the shifts for these filters and handles, if the ways are those of this paint.
     pub(super) fn follow(
         &mut self,
+        ways: &HandleWays,
         paint: Version,
         filters: &Arc<BTreeMap<HandleId, HandleFilter>>,
         handles: &[Handle],
@@ -61,22 +46,23 @@ impl FilterWork {
             return;
         }
         self.shifts.clear();
-        if let Some((_, places)) = self.places.as_ref().filter(|(of, _)| *of == paint) {
-            for ((id, filter), parent) in filters.iter().zip(&source.2) {
-                let [first, last] = filter.span;
-                let frames = places.get(first..=last).unwrap_or_default();
-                let place = |frame: &BTreeMap<HandleId, HandlePlace>| {
-                    let parent = parent.and_then(|parent| frame.get(&parent).copied());
-                    Some((*frame.get(id)?, parent))
-                };
-                let own: Option<Vec<(HandlePlace, Option<HandlePlace>)>> = frames.iter().map(place).collect();
-                let gain = filter.kind.gain(filter.amount);
-                if let Some(own) = own {
-                    let shifts = filter_shifts(&own, filter.width, gain);
-                    self.shifts.insert(*id, (first..).zip(shifts).collect());
-                }
-            }
-            self.of = Some(source);
+        if !ways.know(paint) {
+            return;
         }
+        for ((id, filter), parent) in filters.iter().zip(&source.2) {
+            let [first, last] = filter.span;
+            let place = |handle: HandleId, frame: usize| Some(ways.of(handle)?.get(frame)?.place);
+            let at = |frame: usize| {
+                let parent = parent.and_then(|parent| place(parent, frame));
+                Some((place(*id, frame)?, parent))
+            };
+            let own: Option<Vec<(HandlePlace, Option<HandlePlace>)>> = (first..=last).map(at).collect();
+            let gain = filter.kind.gain(filter.amount);
+            if let Some(own) = own {
+                let shifts = filter_shifts(&own, filter.width, gain);
+                self.shifts.insert(*id, (first..).zip(shifts).collect());
+            }
+        }
+        self.of = Some(source);
     }
 }

@@ -32,9 +32,7 @@ impl Workspace {
                 }
             }
         }
-        let shaped = handles.keys().enumerate().filter(|(_, id)| footprints.contains_key(id));
         Following {
-            shaped: shaped.map(|(number, _)| number).collect(),
             handles: handles.into_iter().collect(),
             paint: document.versions().of(Aspect::Paint),
         }
@@ -44,11 +42,11 @@ impl Workspace {
     pub(super) fn awaits_handles(&self) -> bool {
         let (animation, frames) = (self.document.animation(), &self.frames);
         let paint = self.document.versions().of(Aspect::Paint);
-        let knows_places = animation.filters().is_empty() || frames.filters.knows(paint);
-        let knows_all = knows_places && frames.footprints.knows(paint, animation.footprints());
+        let follows_none = animation.filters().is_empty() && animation.footprints().is_empty();
+        let knows_handles = follows_none || frames.ways.know(paint);
         // Footprints rest on the bent path.
         let knows_way = animation.footprints().is_empty() || !frames.way.is_unknown();
-        !(frames.has_failed || (knows_all && knows_way))
+        !(frames.has_failed || (knows_handles && knows_way))
     }
 
     /// Takes the shifts by filters off a key of the shown frame, which they will move further. A handle that only its
@@ -68,12 +66,15 @@ impl Workspace {
         });
     }
 
-    /// Computes the shifts of filtered handles by the document's present filters, and the places of footprints.
+    /// Computes the shifts of filtered handles by the document's present filters, its footprints, and the motions of its
+    /// body.
     pub(super) fn follow_filters(&mut self) {
         let document = &self.document;
+        let (animation, handles) = (document.animation(), document.handles());
         let paint = document.versions().of(Aspect::Paint);
-        let (filters, handles) = (document.animation().filters(), document.handles());
-        self.frames.filters.follow(paint, filters, handles);
-        self.follow_footprints(paint);
+        let frames = &mut self.frames;
+        frames.filters.follow(&frames.ways, paint, animation.filters(), handles);
+        frames.footprints.follow(&frames.ways, paint, animation.footprints());
+        self.follow_path();
     }
 }

@@ -1,80 +1,98 @@
-//! The places at which footprints hold handles of a sequence in every frame, once the handles were followed.
+//! The footprints of the handles of a sequence, once the handles were followed, and the shapes of those in the few frames
+//! by which the shown one is held.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::document::{BodyPath, HandleFootprints, HandleId, Version};
-use crate::timeline::{BodyMotion, FollowedFrame, Following, Footprints};
+use super::handle_ways::HandleWays;
+use crate::document::{HandleFootprints, HandleId, Version};
+use crate::timeline::{BodyMotion, Footprints};
 
-/// The handles with footprints followed through all frames, and the places at which they are held.
+/// The footprints that were found, and the positions of handles' vertices in frames that hold others.
 #[derive(Debug, Default)]
 pub(crate) struct FootprintWork {
-    /// The positions of each handle's vertices in every frame, and the paint that makes them.
-    shapes: Option<(Version, Shapes)>,
     found: BTreeMap<HandleId, Footprints>,
-    /// The paint, the footprints and the path for which they were found.
-    of: Option<Source>,
+    /// The paint and the footprints for which they were found.
+    of: Option<(Version, Arc<BTreeMap<HandleId, HandleFootprints>>)>,
+    /// The handles' vertices, by frame.
+    shapes: BTreeMap<usize, Shapes>,
 }
 
-/// The positions of the vertices of handles, frame by frame.
-type Shapes = BTreeMap<HandleId, Vec<Vec<DVec3>>>;
-
-/// The source of places: the paint, the footprints, and the path that carries the body afterwards.
-pub(super) type Source = (
-    Version,
-    Arc<BTreeMap<HandleId, HandleFootprints>>,
-    Option<Arc<BodyPath>>,
-);
+/// The positions of the vertices of each handle with footprints, in world space.
+pub(super) type Shapes = BTreeMap<HandleId, Vec<DVec3>>;
 
 impl FootprintWork {
-    /// Returns true if the shapes of all of these handles are known, as this paint makes them.
-    pub(super) fn knows(&self, paint: Version, all: &BTreeMap<HandleId, HandleFootprints>) -> bool {
-        let shapes = self.shapes.as_ref().filter(|(of, _)| *of == paint);
-        all.is_empty() || shapes.is_some_and(|(_, shapes)| all.keys().all(|id| shapes.contains_key(id)))
-    }
-
-    /// Takes the shapes of handles in all frames. Handles without vertices have none.
-    pub(super) fn take(
+    /// Finds these footprints, if the ways are those of this paint.
+    pub(super) fn follow(
         &mut self,
-        following: &Following,
-        frames: &[FollowedFrame],
-        all: &BTreeMap<HandleId, HandleFootprints>,
+        ways: &HandleWays,
+        paint: Version,
+        footprints: &Arc<BTreeMap<HandleId, HandleFootprints>>,
     ) {
-        let mut shapes: Shapes = all.keys().map(|id| (*id, Vec::new())).collect();
-        for (place, number) in following.shaped.iter().enumerate() {
-            let own = frames.iter().filter_map(|frame| frame.shapes.get(place).cloned());
-            shapes.insert(following.handles[*number].0, own.collect());
+        let source = (paint, Arc::clone(footprints));
+        if self.of.as_ref() == Some(&source) {
+            return;
         }
-        self.shapes = Some((following.paint, shapes));
+        let is_of_paint = self.of.as_ref().is_some_and(|(of, _)| *of == paint);
+        let has_shapes = is_of_paint && footprints.keys().all(|id| self.found.contains_key(id));
+        if !has_shapes {
+            self.shapes.clear();
+        }
+        self.found.clear();
         self.of = None;
+        if ways.know(paint) {
+            let found = footprints
+                .iter()
+                .filter_map(|(id, entry)| Some((*id, Footprints::of(entry, ways.of(*id)?))));
+            self.found = found.collect();
+            self.of = Some(source);
+        }
     }
 
-    /// The places at which a handle is held in a frame.
-    pub(super) fn held(&self, handle: HandleId, frame: usize) -> Option<Arc<Vec<DVec3>>> {
-        let places = self.found.get(&handle)?.places.get(&frame)?;
-        Some(Arc::new(places.clone()))
+    /// A frame in which the shapes of handles are needed for a frame, and not known.
+    pub(super) fn unknown_in(&self, frame: usize) -> Option<usize> {
+        let mut needed = self.needed_in(frame);
+        needed.find(|needed| !self.shapes.contains_key(needed))
+    }
+
+    /// Notes the shapes in a frame if `wanted` needs them, and forgets those that it does not need.
+    pub(super) fn note(&mut self, frame: usize, wanted: usize, shapes: impl FnOnce() -> Shapes) {
+        let needed: Vec<usize> = self.needed_in(wanted).collect();
+        self.shapes.retain(|frame, _| needed.contains(frame));
+        if needed.contains(&frame) {
+            self.shapes.entry(frame).or_insert_with(shapes);
+        }
+    }
+
+    /// The places at which a handle whose vertices are at `own` is held in a frame of a body with these motions.
+    pub(super) fn held(
+        &self,
+        handle: HandleId,
+        frame: usize,
+        own: &Shapes,
+        body: &[BodyMotion],
+    ) -> Option<Arc<Vec<DVec3>>> {
+        let shape_in = |frame: usize| self.shapes.get(&frame)?.get(&handle).map(Vec::as_slice);
+        let places = self
+            .found
+            .get(&handle)?
+            .places(frame, own.get(&handle)?, shape_in, body)?;
+        Some(Arc::new(places))
+    }
+
+    /// Returns true if a handle is held in a frame.
+    pub(super) fn hold_in(&self, frame: usize) -> bool {
+        self.found.values().any(|found| found.hold(frame))
     }
 
     /// The number of footprints of a handle.
     pub(super) fn count(&self, handle: HandleId) -> Option<usize> {
-        Some(self.found.get(&handle)?.count)
+        Some(self.found.get(&handle)?.count())
     }
 
-    /// Finds the places for these footprints on this path, along which the body has these motions.
-    pub(super) fn follow(&mut self, source: Source, body: &[BodyMotion]) {
-        if self.of.as_ref() == Some(&source) {
-            return;
-        }
-        self.found.clear();
-        if let Some((_, shapes)) = self.shapes.as_ref().filter(|(of, _)| *of == source.0) {
-            let known = source.1.iter().filter_map(|(id, entry)| {
-                let shapes = shapes.get(id).filter(|shapes| !shapes.is_empty())?;
-                Some((*id, Footprints::of(entry, shapes, body)))
-            });
-            self.found = known.collect();
-            self.of = Some(source);
-        }
+    fn needed_in(&self, frame: usize) -> impl Iterator<Item = usize> {
+        self.found.values().flat_map(move |found| found.needed_in(frame))
     }
 }

@@ -1,9 +1,10 @@
 //! Footprints of handles of a sequence, which are held wherever they rest on the ground.
 
-use std::sync::Arc;
+use glam::DVec3;
 
+use super::footprint_work::Shapes;
 use super::state::Workspace;
-use crate::document::{HandleFootprints, HandleId, Version};
+use crate::document::{HandleFootprints, HandleId, Paint};
 
 /// Holds a handle wherever it rests on the ground, or no longer.
 pub(crate) fn set_footprints(workspace: &mut Workspace, handle: HandleId, footprints: Option<HandleFootprints>) {
@@ -21,11 +22,18 @@ impl Workspace {
         self.frames.footprints.count(handle)
     }
 
-    /// Finds the places of footprints by the document's present ones and its path.
-    pub(super) fn follow_footprints(&mut self, paint: Version) {
-        self.follow_path();
-        let animation = self.document.animation();
-        let source = (paint, Arc::clone(animation.footprints()), animation.path().cloned());
-        self.frames.footprints.follow(source, self.frames.way.motions());
+    /// The positions of the vertices of handles with footprints, where the surface is so far from the file's.
+    pub(super) fn held_shapes(&self, way: &[DVec3]) -> Shapes {
+        let file = self.model().map_or(&[][..], |model| &model.surface.positions);
+        let footprints = self.document.animation().footprints();
+        let mut shapes = Shapes::new();
+        for ((paint, file), way) in self.document.paint().iter().zip(file).zip(way) {
+            if let Paint::Handle(id) = paint
+                && footprints.contains_key(id)
+            {
+                shapes.entry(*id).or_default().push(*file + *way);
+            }
+        }
+        shapes
     }
 }

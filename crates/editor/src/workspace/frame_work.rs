@@ -8,6 +8,8 @@ use glam::DVec3;
 use super::body_way::BodyWay;
 use super::filter_work::FilterWork;
 use super::footprint_work::FootprintWork;
+use super::handle_ways::HandleWays;
+use super::mix_work::MixWork;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -26,10 +28,14 @@ pub(crate) struct FrameWork {
     pub(super) places_of: Option<Version>,
     /// The way of the body through all frames.
     pub(super) way: BodyWay,
+    /// The ways of the handles through all frames.
+    pub(super) ways: HandleWays,
     /// The shifts of handles by filters.
     pub(super) filters: FilterWork,
-    /// The places at which footprints hold handles.
+    /// The footprints of handles.
     pub(super) footprints: FootprintWork,
+    /// The places to which another sequence leads handles.
+    pub(super) mix: MixWork,
     /// True if not all frames could be read.
     pub(super) has_failed: bool,
 }

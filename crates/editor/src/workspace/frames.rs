@@ -50,7 +50,7 @@ impl Workspace {
         }
     }
 
-    /// A frame with a key that reaches this one, in which the handles' places are not known.
+    /// A frame with a key or a footprint that reaches this one, in which the handles are not known.
     fn unknown_frame(&self, frame: usize) -> Option<usize> {
         let document = &self.document;
         let is_known = |needed: &usize| {
@@ -58,11 +58,12 @@ impl Workspace {
             is_current && self.frames.places.contains_key(needed)
         };
         let mut needed = frames_that_reach(document.animation(), document.handles(), frame).into_iter();
-        needed.find(|needed| *needed != frame && !is_known(needed))
+        let of_keys = needed.find(|needed| *needed != frame && !is_known(needed));
+        of_keys.or_else(|| self.frames.footprints.unknown_in(frame))
     }
 
-    /// Notes the handles' places in a frame that has a key.
-    fn note_places(&mut self, frame: usize, shape: &[DVec3]) {
+    /// Notes the handles in a frame that has a key, or whose footprint reaches the wanted frame.
+    fn note_handles(&mut self, frame: usize, shape: &[DVec3]) {
         let paint = self.document.versions().of(Aspect::Paint);
         if self.frames.places_of.replace(paint) != Some(paint) {
             self.frames.places.clear();
@@ -73,6 +74,10 @@ impl Workspace {
             let places = self.places_in(shape);
             self.frames.places.insert(frame, places);
         }
+        let wanted = self.frames.wanted.unwrap_or(self.document.animation().frame());
+        let mut footprints = std::mem::take(&mut self.frames.footprints);
+        footprints.note(frame, wanted, || self.held_shapes(shape));
+        self.frames.footprints = footprints;
     }
 
     /// Takes a frame that was read, or the reason why it was not.
@@ -80,7 +85,7 @@ impl Workspace {
         let is_awaited = self.frame_to_read() == Some(frame);
         match shape {
             Ok(shape) if shape.len() == self.document.rest().len() => {
-                self.note_places(frame, &shape);
+                self.note_handles(frame, &shape);
                 // A frame that was read for its handles' places is not shown.
                 if self.frames.wanted == Some(frame) {
                     self.frames.read = Some((frame, shape));
@@ -99,7 +104,8 @@ impl Workspace {
     /// Shows the wanted frame if it was read.
     pub(crate) fn show_wanted_frame(&mut self) {
         let Some(wanted) = self.frames.wanted else { return };
-        if self.frame_to_read().is_some() || self.awaits_handles() {
+        self.follow_filters();
+        if self.frame_to_read().is_some() || self.awaits_handles() || self.awaits_mix(wanted) {
             return;
         }
         let Some((_, shape)) = self.frames.read.take_if(|(frame, _)| *frame == wanted) else {
@@ -124,9 +130,10 @@ impl Workspace {
 
     /// Brings the handles in the shown frame to where the keys have them, in the present step if all is known.
     pub(super) fn pose_frame(&mut self) {
+        self.follow_filters();
         let (frame, shape) = (self.document.animation().frame(), Arc::clone(&self.document.rest));
-        self.note_places(frame, &shape);
-        match self.unknown_frame(frame).is_none() && !self.awaits_handles() {
+        self.note_handles(frame, &shape);
+        match self.unknown_frame(frame).is_none() && !self.awaits_handles() && !self.awaits_mix(frame) {
             true => self.put_frame(frame, &shape),
             false if self.frames.wanted.is_none() => {
                 self.frames.wanted = Some(frame);
@@ -138,8 +145,7 @@ impl Workspace {
     }
 
     fn put_frame(&mut self, frame: usize, shape: &Arc<Vec<DVec3>>) {
-        self.note_places(frame, shape);
-        self.follow_filters();
+        self.note_handles(frame, shape);
         let places = self.frame_places(Some(frame), shape);
         let document = &mut self.document;
         document.put_frame(frame, shape, &places);
@@ -159,6 +165,8 @@ impl Workspace {
     fn frame_places(&self, frame: Option<usize>, shape: &[DVec3]) -> BTreeMap<HandleId, FramePlace> {
         let document = &self.document;
         let (before, now) = (self.places_in(document.rest()), self.places_in(shape));
+        let held_in = frame.filter(|frame| self.frames.footprints.hold_in(*frame));
+        let held_in = held_in.map(|frame| (frame, self.held_shapes(shape)));
         let place = |handle: &Handle| {
             let own = now.get(&handle.id)?;
             let pivot = match before.get(&handle.id)? {
@@ -170,13 +178,21 @@ impl Workspace {
                     true => Some(*own),
                     false => self.frames.places.get(&key)?.get(&handle.id).copied(),
                 };
+                let mix = document.animation().mix();
+                let paint = document.versions().of(Aspect::Paint);
+                let led = mix.and_then(|mix| Some((self.frames.mix.place(handle.id, frame, (paint, mix))?, mix)));
+                if let Some((led, mix)) = led {
+                    return own.transform_to(led, mix.share, pivot);
+                }
                 let transform = transform_at(document.animation(), handle, (frame, own, pivot), place_at);
                 match self.frames.filters.shift(handle.id, frame) {
                     DVec3::ZERO => transform,
                     shift => transform.moved_by(shift),
                 }
             });
-            let held = frame.and_then(|frame| self.frames.footprints.held(handle.id, frame));
+            let (footprints, body) = (&self.frames.footprints, self.frames.way.motions());
+            let held = held_in.as_ref();
+            let held = held.and_then(|(frame, own)| footprints.held(handle.id, *frame, own, body));
             let place = FramePlace { pivot, transform, held };
             Some((handle.id, place))
         };

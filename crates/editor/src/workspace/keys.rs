@@ -174,7 +174,7 @@ impl Workspace {
         self.step(name, |workspace| {
             let mut animation = workspace.document.animation().clone();
             let selected = change(&mut animation);
-            animation.drop_keys_of_footprints();
+            animation.drop_useless_keys();
             animation.tidy_spans();
             let time = animation.time();
             workspace.document.set_animation(animation);

@@ -21,11 +21,14 @@ mod frame_work;
 mod frames;
 mod freedom;
 mod handle_values;
+mod handle_ways;
 mod handles;
 mod key_work;
 mod keys;
 mod mirror;
 mod mirror_request;
+mod mix;
+mod mix_work;
 mod objects;
 mod options;
 mod painting;
@@ -67,6 +70,7 @@ pub(crate) use keys::{
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;
+pub(crate) use mix::set_mix;
 pub(crate) use objects::{
     NOTHING_HERE, act_on_object_here, act_on_objects, isolate, set_small_parts, show_everything, turn_inside_out,
 };

@@ -1,7 +1,5 @@
 //! Actions on the bent path of a sequence's body.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::body_way::BodyWay;
@@ -85,9 +83,7 @@ impl Workspace {
         match (frames, self.model().cloned()) {
             (Ok(frames), Some(model)) if Some(frames.len()) == self.document.animation().frames() => {
                 self.frames.way.take(&frames, &model);
-                self.frames.filters.take(following, &frames);
-                let footprints = Arc::clone(self.document.animation().footprints());
-                self.frames.footprints.take(following, &frames, &footprints);
+                self.frames.ways.take(following, &frames);
             }
             (Ok(_), _) => {}
             (Err(sentence), _) => {

@@ -6,36 +6,16 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Beginning, BodyMotion, BodyPath, Command, Event, FollowedFrame, ToolMode, middle_of};
+use pliant_editor::{Beginning, BodyMotion, BodyPath, Command, Event, ToolMode, middle_of};
 use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::{Rig, VIEWPORT_PX};
-use crate::sequences::{COUNT, deliver, frame, go_to, open};
+use crate::sequences::{COUNT, deliver, follow, frame, go_to, open, shape};
 
-/// The frames followed through the sequence.
-fn followed(rig: &Rig) -> Vec<FollowedFrame> {
-    let file = &rig.model.surface.positions;
-    let middle = |number: usize| {
-        let ways = frame(rig, number);
-        let shape: Vec<DVec3> = file.iter().zip(&**ways).map(|(place, way)| *place + *way).collect();
-        middle_of(&shape)
-    };
-    (0..COUNT)
-        .map(|number| FollowedFrame {
-            middle: middle(number),
-            places: Vec::new(),
-            shapes: Vec::new(),
-        })
-        .collect()
-}
-
-fn follow(rig: &mut Rig) {
-    assert!(rig.editor.view().wants_following);
-    let frames = followed(rig);
-    let following = rig.editor.following();
-    rig.send(Event::Followed(following, Ok(frames)));
-    assert!(!rig.editor.view().wants_following);
+/// The middle of the body in a frame.
+fn middle(rig: &Rig, number: usize) -> DVec3 {
+    middle_of(&shape(rig, number))
 }
 
 /// A sequence with its path shown.
@@ -58,7 +38,7 @@ fn exported(rig: &Rig) -> Vec<BodyMotion> {
     let Beginning::Edit(edit) = Beginning::parse(&text).unwrap() else {
         panic!("{text}");
     };
-    let trajectory: Vec<DVec3> = followed(rig).iter().map(|frame| frame.middle).collect();
+    let trajectory: Vec<DVec3> = (0..COUNT).map(|number| middle(rig, number)).collect();
     edit.body_motions(&trajectory)
 }
 
@@ -76,7 +56,7 @@ fn on_screen(rig: &Rig, world: DVec3) -> DVec2 {
 
 /// The point on the ground under the body in a frame.
 fn ground(rig: &Rig, number: usize) -> DVec3 {
-    let middle = followed(rig)[number].middle;
+    let middle = middle(rig, number);
     let motion = exported(rig).get(number).copied();
     let place = motion.map_or(middle, |motion| motion.moved(middle));
     DVec3::new(place.x, -1.0, place.z)
@@ -105,10 +85,10 @@ fn a_drag_takes_the_way_along_on_the_ground_and_every_change_is_a_step() {
     assert!(first.shifts().all(|(_, shift)| shift.y.abs() < 1e-12), "it stays level");
     assert!(on_screen(&rig, ground(&rig, 20)).distance(target) < 1e-6);
     // A click adds a place that moves nothing there; dragging moves it again; Ctrl and a click remove it.
-    let before = exported(&rig)[30].moved(followed(&rig)[30].middle);
+    let before = exported(&rig)[30].moved(middle(&rig, 30));
     drag(&mut rig, 30, DVec2::ZERO);
     assert_eq!(path(&rig).unwrap().shifts().count(), 4);
-    assert!(exported(&rig)[30].moved(followed(&rig)[30].middle).distance(before) < 1e-12);
+    assert!(exported(&rig)[30].moved(middle(&rig, 30)).distance(before) < 1e-12);
     let clicked = path(&rig);
     drag(&mut rig, 30, DVec2::new(30.0, 10.0));
     assert_ne!(path(&rig), clicked);

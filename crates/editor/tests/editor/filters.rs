@@ -5,15 +5,12 @@
 use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
-use pliant_editor::{
-    Beginning, Command, Event, FilterKind, FollowedFrame, HandleFilter, HandleId, HandlePlace, HandleTransform,
-    middle_of,
-};
+use pliant_editor::{Beginning, Command, Event, FilterKind, HandleFilter, HandleId, HandlePlace, HandleTransform};
 use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use crate::sequences::{COUNT, deliver, frame, go_to, open};
+use crate::sequences::{COUNT, deliver, follow, frame, go_to, open};
 
 const FILTER: HandleFilter = HandleFilter {
     span: [3, 36],
@@ -21,30 +18,6 @@ const FILTER: HandleFilter = HandleFilter {
     width: 1.5,
     amount: 2.0,
 };
-
-/// Follows the handles through the sequence, and reads the frames that are wanted then.
-fn follow(rig: &mut Rig) {
-    assert!(rig.editor.view().wants_following);
-    let following = rig.editor.following();
-    let file = &rig.model.surface.positions;
-    let frames = (0..COUNT).map(|number| {
-        let ways = frame(rig, number);
-        let shape: Vec<DVec3> = file.iter().zip(&**ways).map(|(place, way)| *place + *way).collect();
-        let place = |vertices: &[pliant_mesh::SurfaceVertex]| {
-            let at = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|v| positions[v.index()]).collect() };
-            HandlePlace::of(&at(file), &at(&shape))
-        };
-        FollowedFrame {
-            middle: middle_of(&shape),
-            places: following.handles.iter().map(|(_, vertices)| place(vertices)).collect(),
-            shapes: Vec::new(),
-        }
-    });
-    let frames = frames.collect();
-    rig.send(Event::Followed(following, Ok(frames)));
-    deliver(rig);
-    assert!(!rig.editor.view().wants_following);
-}
 
 /// A ball with a handle whose way is filtered, and that is lifted at frame 10.
 fn filtered() -> (Rig, HandleId) {

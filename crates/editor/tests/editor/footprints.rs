@@ -4,14 +4,13 @@
 
 use glam::DVec3;
 use pliant_editor::{
-    Beginning, Command, Event, FilterKind, FollowedFrame, GroundAxis, HandleFilter, HandleFootprints, HandleId,
-    HandlePlace, middle_of,
+    Beginning, Command, Event, FilterKind, GroundAxis, HandleFilter, HandleFootprints, HandleId, middle_of,
 };
-use pliant_mesh::{SurfaceVertex, shapes};
+use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use crate::sequences::{COUNT, deliver, frame, go_to, open};
+use crate::sequences::{COUNT, deliver, follow, frame, go_to, open, shape};
 
 /// All frames are one footprint.
 const ALL: HandleFootprints = HandleFootprints {
@@ -23,41 +22,6 @@ const ALL: HandleFootprints = HandleFootprints {
 
 /// Its middle frame.
 const MIDDLE: usize = (COUNT - 1) / 2;
-
-fn shape(rig: &Rig, number: usize) -> Vec<DVec3> {
-    let file = rig.model.surface.positions.iter();
-    file.zip(&**frame(rig, number))
-        .map(|(place, way)| *place + *way)
-        .collect()
-}
-
-/// Follows the handles through the sequence, and reads the frames that are wanted then.
-fn follow(rig: &mut Rig) {
-    assert!(rig.editor.view().wants_following);
-    let following = rig.editor.following();
-    let file = rig.model.surface.positions.clone();
-    let at = |vertices: &[SurfaceVertex], positions: &[DVec3]| -> Vec<DVec3> {
-        vertices.iter().map(|vertex| positions[vertex.index()]).collect()
-    };
-    let of_frame = |number: usize| {
-        let shape = shape(rig, number);
-        let handles = following.handles.iter();
-        let places = handles.map(|(_, vertices)| HandlePlace::of(&at(vertices, &file), &at(vertices, &shape)));
-        FollowedFrame {
-            middle: middle_of(&shape),
-            places: places.collect(),
-            shapes: following
-                .shaped
-                .iter()
-                .map(|number| at(&following.handles[*number].1, &shape))
-                .collect(),
-        }
-    };
-    let frames = (0..COUNT).map(of_frame).collect();
-    rig.send(Event::Followed(following, Ok(frames)));
-    deliver(rig);
-    assert!(!rig.editor.view().wants_following);
-}
 
 fn held() -> (Rig, HandleId) {
     let mut rig = open(shapes::icosphere(2));
@@ -88,7 +52,7 @@ fn away(rig: &Rig, number: usize) -> f64 {
     let (middle, file) = (shape(rig, MIDDLE), &rig.model.surface.positions);
     let shown = rig.editor.document().from_file();
     let vertices = &rig.editor.following().handles[0].1;
-    let distance = |vertex: &SurfaceVertex| {
+    let distance = |vertex: &pliant_mesh::SurfaceVertex| {
         let v = vertex.index();
         let (meant, found) = (middle[v], file[v] + shown[v]);
         there
@@ -119,8 +83,12 @@ fn a_held_handle_rests_in_all_frames_on_a_bent_path_too() {
             .fold(0.0, f64::max);
         assert_eq!(bent > 1e-3, number != MIDDLE, "{number}: {bent}");
     }
+    // While the path is bent at a held frame, its footprint is known: no frame is read again.
+    go_to(&mut rig, 25);
     rig.command(Command::BendPath(20, DVec3::new(0.3, 0.0, 0.5)));
-    deliver(&mut rig);
+    assert_eq!(rig.editor.view().wanted_frame, None);
+    rig.drain();
+    assert!(away(&rig, 25) < 1e-9, "{}", away(&rig, 25));
     for number in [3, 25, COUNT - 1] {
         go_to(&mut rig, number);
         assert!(away(&rig, number) < 1e-9, "{number}: {}", away(&rig, number));
@@ -176,4 +144,22 @@ fn nothing_else_moves_a_held_handle_and_edits_and_projects_have_its_footprints()
             .unavailable_because(&Command::SetFootprints(id, Some(ALL)))
             .is_some()
     );
+}
+
+#[test]
+fn a_method_that_moves_handles_as_a_whole_is_refused_when_it_is_chosen() {
+    let (mut rig, id) = held();
+    for declaration in pliant_deform::METHODS {
+        let (name, method) = (declaration.name, (declaration.first_choice)());
+        let takes_places = method.takes_places();
+        let why_not = rig.editor.unavailable_because(&Command::SetMethod(method.clone()));
+        assert_eq!(why_not.is_none(), takes_places, "{name}: {why_not:?}");
+        rig.command(Command::SetFootprints(id, None));
+        rig.command(Command::SetMethod(method));
+        let why_not = rig.editor.unavailable_because(&Command::SetFootprints(id, Some(ALL)));
+        assert_eq!(why_not.is_none(), takes_places, "{name}: {why_not:?}");
+        rig.undo();
+        rig.undo();
+        assert_eq!(rig.editor.document().animation().footprints()[&id], ALL);
+    }
 }

@@ -29,6 +29,7 @@ mod laws;
 mod memory_limit;
 mod mesh_changes;
 mod mesh_picks;
+mod mixes;
 mod objects;
 mod places;
 mod pose;

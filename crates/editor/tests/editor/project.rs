@@ -22,13 +22,18 @@ pub fn saved(rig: &Rig) -> String {
 }
 
 pub fn reopened(rig: &Rig, text: &str) -> Rig {
+    opened(rig, Beginning::parse(text).unwrap())
+}
+
+/// The same model with this beginning.
+pub fn opened(rig: &Rig, beginning: Beginning) -> Rig {
     let jobs = InlineExecutor::new();
     let mut editor = Editor::new(Box::new(jobs.clone()));
     editor.handle(Event::Viewport { size_px: VIEWPORT_PX });
     editor.handle(Event::Opened {
         model: Arc::clone(&rig.model),
         name: "again".to_owned(),
-        beginning: Some(Beginning::parse(text).unwrap()),
+        beginning: Some(beginning),
     });
     let mut other = Rig::of(editor, jobs, Arc::clone(&rig.model));
     assert_eq!(other.editor.view().problem, None);

@@ -5,11 +5,15 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::project::opened;
 use crate::rig::{CENTRE_PX, Fingerprint, Rig};
 use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::Role;
-use pliant_editor::{Beginning, Command, Event, HandleId, HandlePlace, HandleTransform, KeyId, ToolMode};
-use pliant_mesh::{Drawn, shapes};
+use pliant_editor::{
+    Beginning, Command, EditError, EditFile, Event, FollowedFrame, FollowedHandle, HandleFilter, HandleId, HandlePlace,
+    HandleTransform, KeyId, SequenceEdit, ToolMode, middle_of,
+};
+use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 /// The number of frames.
 pub const COUNT: usize = 40;
@@ -41,6 +45,38 @@ pub fn deliver(rig: &mut Rig) {
         rig.send(Event::Frame(wanted, Ok(shape)));
     }
     rig.drain();
+}
+
+/// The shape in a frame.
+pub fn shape(rig: &Rig, number: usize) -> Vec<DVec3> {
+    let file = rig.model.surface.positions.iter();
+    file.zip(&**frame(rig, number))
+        .map(|(place, way)| *place + *way)
+        .collect()
+}
+
+/// Follows the body and the handles through the sequence, and reads the frames that are wanted then.
+pub fn follow(rig: &mut Rig) {
+    assert!(rig.editor.view().wants_following);
+    let following = rig.editor.following();
+    let file = &rig.model.surface.positions;
+    let of_frame = |number: usize| {
+        let shape = shape(rig, number);
+        let at = |vertices: &[SurfaceVertex], positions: &[DVec3]| -> Vec<DVec3> {
+            vertices.iter().map(|vertex| positions[vertex.index()]).collect()
+        };
+        let handles = following.handles.iter();
+        FollowedFrame {
+            middle: middle_of(&shape),
+            handles: handles
+                .map(|(_, vertices)| FollowedHandle::of(&at(vertices, file), &at(vertices, &shape)))
+                .collect(),
+        }
+    };
+    let frames = (0..COUNT).map(of_frame).collect();
+    rig.send(Event::Followed(following, Ok(frames)));
+    deliver(rig);
+    assert!(!rig.editor.view().wants_following);
 }
 
 pub fn go_to(rig: &mut Rig, frame: usize) {
@@ -271,4 +307,81 @@ fn a_pose_moves_a_handle_as_much_in_every_frame() {
     deliver(&mut rig);
     assert_eq!(rig.editor.document().handles()[0].transform, turned);
     assert_eq!(rig.editor.document().animation().keys()[2].span(id), Some([23, 39]));
+}
+
+/// The document of an edit of the sequence, at a frame.
+fn applied(rig: &Rig, edit: &EditFile, number: usize) -> Result<Rig, EditError> {
+    let setup = edit.resolve(&rig.model)?;
+    let file = rig.model.surface.positions.clone();
+    let handle = |way: &[DVec3]| {
+        let own = (0..file.len()).filter(|v| setup.roles[*v] == Role::Handle(0));
+        let (rest, now): (Vec<DVec3>, Vec<DVec3>) = own.map(|v| (file[v], file[v] + way[v])).unzip();
+        HandlePlace::of(&rest, &now)
+    };
+    let at_rest = handle(&vec![DVec3::ZERO; file.len()]);
+    let own = SequenceEdit::of(edit, &setup, &[at_rest], |number, _| handle(&frame(rig, number)))?;
+    let mut again = opened(rig, own.into());
+    again.send(Event::OpenedSequence {
+        count: COUNT,
+        shown: None,
+    });
+    deliver(&mut again);
+    if again.editor.view().wants_following {
+        follow(&mut again);
+    }
+    go_to(&mut again, number);
+    Ok(again)
+}
+
+#[test]
+fn an_exported_edit_on_the_sequence_again_gives_the_same_frames() {
+    let (mut rig, id) = keyed();
+    rig.command(Command::BendPath(20, DVec3::new(0.3, 0.0, 0.5)));
+    let filter = HandleFilter {
+        amount: 0.5,
+        ..HandleFilter::of_all(COUNT)
+    };
+    rig.command(Command::SetFilter(id, Some(filter)));
+    follow(&mut rig);
+    let text = rig.editor.edit_file().unwrap().to_json();
+    let Beginning::Edit(mut edit) = Beginning::parse(&text).unwrap() else {
+        panic!("{text}");
+    };
+    let same = |rig: &mut Rig, again: &Rig| {
+        assert_eq!(
+            again.editor.document().animation().path(),
+            rig.editor.document().animation().path()
+        );
+        assert_eq!(
+            again.editor.document().animation().filters(),
+            rig.editor.document().animation().filters()
+        );
+        let shapes = [&*rig, again].map(|rig| rig.editor.document().from_file().clone());
+        let apart = shapes[0].iter().zip(&*shapes[1]).map(|(a, b)| a.distance(*b));
+        apart.fold(0.0, f64::max)
+    };
+    for number in [10, 14, 25] {
+        go_to(&mut rig, number);
+        let again = applied(&rig, &edit, number).unwrap();
+        assert_eq!(again.editor.document().animation(), rig.editor.document().animation());
+        assert!(same(&mut rig, &again) < 1e-9, "{number}");
+        // Without pivots, those of the handles ride along.
+        for transform in edit.keys.iter_mut().flat_map(|key| key.handles.values_mut()) {
+            if let HandleTransform::Trs { pivot, .. } = transform {
+                *pivot = None;
+            }
+        }
+        let again = applied(&rig, &edit, number).unwrap();
+        assert!(same(&mut rig, &again) < 1e-9, "{number}");
+    }
+    edit.strength = 0.5;
+    let half = applied(&rig, &edit, 10).unwrap();
+    let lift = |rig: &Rig| rig.editor.document().handles()[0].affine().translation;
+    go_to(&mut rig, 10);
+    assert!(lift(&half).length() < 0.7 * lift(&rig).length());
+    for key in &mut edit.keys {
+        key.space = pliant_editor::KeySpace::World;
+    }
+    let refused = applied(&rig, &edit, 10).err().unwrap().to_string();
+    assert!(refused.contains("keys[0]") && refused.contains("`space`"), "{refused}");
 }

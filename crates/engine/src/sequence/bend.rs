@@ -1,14 +1,16 @@
 //! The solve of a frame: the edit on the frame's own shape.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Budget, Ordering, Role, Target};
-use pliant_editor::{BodyMotion, HandlePlace, Rest, SequenceTimeline, Setup, settle};
+use pliant_editor::{BodyMotion, FollowedHandle, HandlePlace, Rest, SequenceTimeline, Setup, settle};
 use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
 
-use super::held::Held;
+use super::held::{Held, HeldShapes, Shapes};
 use crate::EngineError;
 use crate::apply::bind;
 use crate::watch::Watch;
@@ -24,6 +26,8 @@ pub(super) struct Bending<'a> {
     pub budget: Budget,
     /// The footprints of handles.
     pub footprints: &'a [Held],
+    /// The shapes by which these hold frames.
+    pub held_shapes: &'a HeldShapes<'a>,
     /// The vertices of each handle.
     pub handles: &'a [Vec<SurfaceVertex>],
     /// The motions of the whole body in all frames; none if its path is not bent.
@@ -51,8 +55,16 @@ pub(super) fn vertices_of_handles(setup: &Setup) -> Vec<Vec<SurfaceVertex>> {
 
 /// The place of a handle's vertices in a frame, whose surface is at `positions`.
 pub(super) fn place(vertices: &[SurfaceVertex], first: &[DVec3], positions: &[DVec3]) -> HandlePlace {
-    let at = |positions: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|vertex| positions[vertex.index()]).collect() };
-    HandlePlace::of(&at(first), &at(positions))
+    HandlePlace::of(&at(vertices, first), &at(vertices, positions))
+}
+
+/// The same with the handle's lowest coordinates there.
+pub(super) fn followed(vertices: &[SurfaceVertex], first: &[DVec3], positions: &[DVec3]) -> FollowedHandle {
+    FollowedHandle::of(&at(vertices, first), &at(vertices, positions))
+}
+
+fn at(vertices: &[SurfaceVertex], positions: &[DVec3]) -> Vec<DVec3> {
+    vertices.iter().map(|vertex| positions[vertex.index()]).collect()
 }
 
 /// The maps of all targets, if each is one.
@@ -66,40 +78,68 @@ fn maps(targets: &[Target]) -> Option<Vec<DAffine3>> {
 
 impl Bending<'_> {
     /// The handles' targets in a frame whose surface is at `positions`; `None` if no handle moves.
-    fn targets(&self, frame: usize, positions: &[DVec3]) -> Option<Vec<Target>> {
-        let held: Vec<&Held> = self
-            .footprints
-            .iter()
-            .filter(|own| own.footprints.places.contains_key(&frame))
-            .collect();
+    ///
+    /// # Errors
+    /// A frame that can't be read, by which a footprint holds this one.
+    fn targets(&self, frame: usize, positions: &[DVec3], watch: &Watch) -> Result<Option<Vec<Target>>, EngineError> {
+        let held = self.held_places(frame, positions, watch)?;
         if held.is_empty() && !self.timeline.reaches(frame) {
-            return None;
+            return Ok(None);
         }
         let first = &self.model.surface.positions;
         let handles = self.handles.iter();
         let places: Vec<HandlePlace> = handles.map(|vertices| place(vertices, first, positions)).collect();
         let maps = self.timeline.maps_at(frame, &places);
-        let is_moved = |own: &&Held| {
-            let mut now = self.handles[own.handle].iter().map(|vertex| positions[vertex.index()]);
-            own.footprints.places[&frame]
-                .iter()
-                .any(|place| now.next() != Some(*place))
+        let is_moved = |(handle, places): &(usize, Vec<DVec3>)| {
+            let now = self.handles[*handle].iter().map(|vertex| &positions[vertex.index()]);
+            !now.eq(places)
         };
         if maps.is_none() && !held.iter().any(is_moved) {
-            return None;
+            return Ok(None);
         }
         let maps = maps.unwrap_or_else(|| vec![DAffine3::IDENTITY; self.handles.len()]);
         let mut targets: Vec<Target> = maps.into_iter().map(Target::Map).collect();
-        for own in held {
-            targets[own.handle] = Target::Places(own.footprints.places[&frame].clone());
+        for (handle, places) in held {
+            targets[handle] = Target::Places(places);
         }
-        Some(targets)
+        Ok(Some(targets))
+    }
+
+    /// The handles that footprints hold in a frame, by number, and the places of their vertices.
+    ///
+    /// # Errors
+    /// A frame that can't be read, by which a footprint holds this one.
+    fn held_places(
+        &self,
+        frame: usize,
+        positions: &[DVec3],
+        watch: &Watch,
+    ) -> Result<Vec<(usize, Vec<DVec3>)>, EngineError> {
+        let holding = self.footprints.iter().enumerate();
+        let holding: Vec<(usize, &Held)> = holding.filter(|(_, own)| own.footprints.hold(frame)).collect();
+        let mut known: BTreeMap<usize, Shapes> = BTreeMap::new();
+        for needed in holding.iter().flat_map(|(_, own)| own.footprints.needed_in(frame)) {
+            if let Entry::Vacant(entry) = known.entry(needed) {
+                entry.insert(self.held_shapes.in_frame(needed, watch)?);
+            }
+        }
+        let own_shapes = match holding.is_empty() {
+            true => return Ok(Vec::new()),
+            false => self.held_shapes.at(positions),
+        };
+        let places = |(number, own): (usize, &Held)| {
+            let shape_in = |frame: usize| known.get(&frame).map(|shapes| &*shapes[number]);
+            let places = own.footprints.places(frame, &own_shapes[number], shape_in, self.body)?;
+            Some((own.handle, places))
+        };
+        Ok(holding.into_iter().filter_map(places).collect())
     }
 
     /// Solves a frame whose surface is at `positions`; `None` if nothing moves there. `file` is used in messages.
     ///
     /// # Errors
-    /// A frame that can't be bound or solved; [`EngineError::Interrupted`].
+    /// A frame that can't be bound or solved, or one by which a footprint holds it and which can't be read;
+    /// [`EngineError::Interrupted`].
     pub fn frame(
         &self,
         frame: usize,
@@ -123,7 +163,7 @@ impl Bending<'_> {
 
     /// Bends a frame whose surface is at `positions` by its handles; `None` if none of them moves.
     fn bent(&self, frame: usize, file: &Path, positions: &[DVec3], watch: &Watch) -> Result<Option<Bent>, EngineError> {
-        let Some(targets) = self.targets(frame, positions) else {
+        let Some(targets) = self.targets(frame, positions, watch)? else {
             return Ok(None);
         };
         let first = &self.model.surface.positions;

@@ -1,16 +1,16 @@
-//! Handles followed through the frames of a sequence: their places, the motion of the body with its bent path, and the
-//! shapes of handles with footprints.
+//! Handles followed through the frames of a sequence: their places, their footprints, and the motion of the body with its
+//! bent path.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 use pliant_editor::{
-    BodyMotion, EditError, EditFile, FootprintEntry, Footprints, HandlePlace, PathPart, SequenceTimeline, Setup,
-    middle_of,
+    BodyMotion, EditError, EditFile, FollowedHandle, FootprintEntry, Footprints, HandlePlace, PathPart,
+    SequenceTimeline, Setup, middle_of,
 };
 use pliant_mesh::{Drawn, SurfaceVertex};
 
-use super::bend::place;
+use super::bend::{followed, place};
 use super::held::Held;
 use super::side_by_side::side_by_side;
 use super::source::Source;
@@ -22,8 +22,6 @@ use crate::watch::Watch;
 pub(super) struct Handles<'a> {
     /// The vertices of each.
     pub vertices: &'a [Vec<SurfaceVertex>],
-    /// Those with footprints.
-    pub footprints: &'a [(usize, &'a FootprintEntry)],
     /// The part whose middle makes the path of the body.
     pub path: Option<PathPart>,
     /// Those that another sequence leads.
@@ -36,14 +34,12 @@ pub(super) struct Followed {
     rest: Vec<HandlePlace>,
     frames: BTreeMap<usize, OfFrame>,
     /// The motions of the body in all frames; none if its path is not bent.
-    body: Vec<BodyMotion>,
+    pub body: Vec<BodyMotion>,
 }
 
 struct OfFrame {
-    /// The place of each handle.
-    places: Vec<HandlePlace>,
-    /// The positions of the vertices of each handle with footprints, in their order.
-    shapes: Vec<Vec<DVec3>>,
+    /// Each handle.
+    handles: Vec<FollowedHandle>,
     /// The place of each led handle in the other sequence.
     led: Vec<HandlePlace>,
     /// The middle of the part that makes the path of the body.
@@ -64,10 +60,7 @@ impl Followed {
     ) -> Result<Self, EngineError> {
         let rest = &first.model.surface.positions;
         let place_in = |positions: &[DVec3], handle: usize| place(&handles.vertices[handle], rest, positions);
-        let places = |positions: &[DVec3]| -> Vec<HandlePlace> {
-            let numbers = 0..handles.vertices.len();
-            numbers.map(|handle| place_in(positions, handle)).collect()
-        };
+        let numbers = 0..handles.vertices.len();
         let of_frame = |frame: usize| -> Result<OfFrame, EngineError> {
             let positions = source.positions(frame, mesh, watch)?;
             let led = match other {
@@ -77,18 +70,14 @@ impl Followed {
                     handles.led.iter().map(|handle| place_in(&theirs, *handle)).collect()
                 }
             };
-            let shape = |(handle, _): &(usize, &FootprintEntry)| -> Vec<DVec3> {
-                let vertices = handles.vertices[*handle].iter();
-                vertices.map(|vertex| positions[vertex.index()]).collect()
-            };
-            let places = places(&positions);
+            let own = handles.vertices.iter();
+            let own: Vec<FollowedHandle> = own.map(|vertices| followed(vertices, rest, &positions)).collect();
             let of_frame = OfFrame {
                 middle: handles.path.map(|part| match part {
                     PathPart::Body => middle_of(&positions),
-                    PathPart::Handle(handle) => places[handle].centre(),
+                    PathPart::Handle(handle) => own[handle].place.centre(),
                 }),
-                places,
-                shapes: handles.footprints.iter().map(shape).collect(),
+                handles: own,
                 led,
             };
             Ok(of_frame)
@@ -98,7 +87,7 @@ impl Followed {
         let trajectory: Option<Vec<DVec3>> = frames.values().map(|frame| frame.middle).collect();
         let body = trajectory.map_or_else(Vec::new, |trajectory| edit.body_motions(&trajectory));
         Ok(Self {
-            rest: places(rest),
+            rest: numbers.map(|handle| place_in(rest, handle)).collect(),
             frames,
             body,
         })
@@ -115,24 +104,20 @@ impl Followed {
         edit.sequence_timeline(
             setup,
             &self.rest,
-            |frame, handle| self.frames[&frame].places[handle],
+            |frame, handle| self.frames[&frame].handles[handle].place,
             led,
         )
     }
 
-    /// The footprints and the motions of the body. All frames were read if there are footprints.
-    pub fn footprints(self, entries: &[(usize, &FootprintEntry)]) -> (Vec<Held>, Vec<BodyMotion>) {
-        let mut shapes: Vec<Vec<Vec<DVec3>>> = vec![Vec::new(); entries.len()];
-        for of_frame in self.frames.into_values() {
-            for (shapes, shape) in shapes.iter_mut().zip(of_frame.shapes) {
-                shapes.push(shape);
+    /// The footprints. All frames were read if there are any.
+    pub fn footprints(&self, entries: &[(usize, &FootprintEntry)]) -> Vec<Held> {
+        let of_entry = |(handle, entry): &(usize, &FootprintEntry)| {
+            let frames: Vec<FollowedHandle> = self.frames.values().map(|frame| frame.handles[*handle]).collect();
+            Held {
+                handle: *handle,
+                footprints: Footprints::of(&entry.footprints(), &frames),
             }
-        }
-        let pairs = entries.iter().zip(&shapes);
-        let footprints = pairs.map(|((handle, entry), shapes)| Held {
-            handle: *handle,
-            footprints: Footprints::of(&entry.footprints(), shapes, &self.body),
-        });
-        (footprints.collect(), self.body)
+        };
+        entries.iter().map(of_entry).collect()
     }
 }

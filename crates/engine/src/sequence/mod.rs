@@ -4,6 +4,7 @@
 //! Frames are read, solved, written and dropped, as many at a time as the pool has threads, so that a sequence need not
 //! fit into memory. No frame depends on another one's solution.
 
+mod applied;
 mod bend;
 mod cache;
 mod folder;
@@ -26,6 +27,7 @@ use std::time::Instant;
 use self::bend::{Bending, vertices_of_handles};
 use self::cache::Cache;
 use self::followed::{Followed, Handles};
+use self::held::HeldShapes;
 use self::kind::Kind;
 use self::leading::leading_sequence;
 use self::morphs::Morphs;
@@ -91,14 +93,13 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let other = leading_sequence(job, edit, (&first, source.count()))?;
     let ways = Handles {
         vertices: &handles,
-        footprints: &footprints,
         path: edit.part_of_path().map_err(in_edit)?,
         led: &led,
     };
     let sources = (&source, other.as_ref());
     let followed = Followed::of(&needed, (&first, &rest), sources, (edit, &ways), watch)?;
     let timeline = followed.timeline(edit, &setup, &led).map_err(in_edit)?;
-    let (footprints, body) = followed.footprints(&footprints);
+    let footprints = followed.footprints(&footprints);
     // A path alone bends nothing.
     let may_bend = !footprints.is_empty() || (0..source.count()).any(|frame| timeline.reaches(frame));
     let ordering = match may_bend {
@@ -108,21 +109,23 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
             order(&first.model, &setup, job.budget, &progress, &watch.cancel)?
         }
     };
+    let held_shapes = HeldShapes::of(&footprints, &handles, &source, (&first, &rest));
     let bending = Bending {
         model: &first.model,
         setup: &setup,
         timeline: &timeline,
         footprints: &footprints,
+        held_shapes: &held_shapes,
         ordering: ordering.as_ref(),
         budget: job.budget,
         handles: &handles,
-        body: &body,
+        body: &followed.body,
     };
     let mut report = SequenceReport {
         method: setup.method.name().to_owned(),
         vertices: rest.file_vertex_count,
         frames: source.count(),
-        footprints: footprints.iter().map(|own| own.footprints.count).sum(),
+        footprints: footprints.iter().map(|own| own.footprints.count()).sum(),
         ..SequenceReport::default()
     };
     report.warn(first.scene.notes().iter().cloned().chain(note));

@@ -8,9 +8,10 @@ use pliant_editor::{FollowedFrame, Following, middle_of};
 use pliant_io::Format;
 use pliant_mesh::Drawn;
 
-use super::bend::place;
+use super::bend::followed;
 use super::cache::Cache;
 use super::folder::Folder;
+use super::leading::other_sequence;
 use super::morphs::Morphs;
 use super::side_by_side::side_by_side;
 use super::source::{Source, cache_format};
@@ -111,6 +112,21 @@ impl OpenSequence {
         })
     }
 
+    /// Another sequence of the same mesh that can lead handles of this one: a folder or a point cache.
+    ///
+    /// # Errors
+    /// A path that is no such sequence, or one of another mesh or with another number of frames.
+    pub fn other(&self, path: &Path) -> Result<Self, EngineError> {
+        Ok(Self {
+            path: path.to_owned(),
+            mesh: Arc::clone(&self.mesh),
+            rest: self.rest.clone(),
+            source: other_sequence(path, &self.mesh, (&self.path, self.count()))?,
+            fps: self.fps,
+            note: None,
+        })
+    }
+
     /// The folder, the point cache or the glTF.
     pub fn path(&self) -> &Path {
         &self.path
@@ -143,22 +159,29 @@ impl OpenSequence {
     pub fn followed(&self, following: &Following, watch: &Watch) -> Result<Vec<FollowedFrame>, EngineError> {
         let frames: Vec<usize> = (0..self.count()).collect();
         let of_frame = |frame: usize| {
-            let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
+            let positions = self.positions(frame, watch)?;
             let first = &self.mesh.model.surface.positions;
             let handles = following.handles.iter();
-            let shape = |number: &usize| -> Vec<DVec3> {
-                let (_, vertices) = &following.handles[*number];
-                vertices.iter().map(|vertex| positions[vertex.index()]).collect()
-            };
+            let handles = handles.map(|(_, vertices)| followed(vertices, first, &positions));
             Ok(FollowedFrame {
                 middle: middle_of(&positions),
-                places: handles
-                    .map(|(_, vertices)| place(vertices, first, &positions))
-                    .collect(),
-                shapes: following.shaped.iter().map(shape).collect(),
+                handles: handles.collect(),
             })
         };
         side_by_side(&frames, of_frame, watch)
+    }
+
+    /// The mesh whose vertices and faces all frames have.
+    pub(super) fn mesh(&self) -> &Loaded {
+        &self.mesh
+    }
+
+    /// The surface in a frame.
+    ///
+    /// # Errors
+    /// Those of [`displacements`](Self::displacements).
+    pub(super) fn positions(&self, frame: usize, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
+        self.source.positions(frame, (&self.mesh, &self.rest), watch)
     }
 
     /// Reads a frame below [`count`](Self::count): the displacement of each surface vertex from its place in the mesh's
@@ -167,7 +190,7 @@ impl OpenSequence {
     /// # Errors
     /// A frame that can't be read, or that has other vertices or faces.
     pub fn displacements(&self, frame: usize, watch: &Watch) -> Result<Vec<DVec3>, EngineError> {
-        let positions = self.source.positions(frame, (&self.mesh, &self.rest), watch)?;
+        let positions = self.positions(frame, watch)?;
         let rest = &self.mesh.model.surface.positions;
         Ok(positions.iter().zip(rest).map(|(own, rest)| *own - *rest).collect())
     }

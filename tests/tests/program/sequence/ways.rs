@@ -81,7 +81,7 @@ fn footprints_rest_and_other_frames_keep_their_bytes() {
     }
     edit["method"] = json!({ "name": "primo" });
     take.edited(&edit, "no", &[])
-        .refused(1, &["primo", "takes no positions"]);
+        .refused(1, &["footprints", "`primo` moves a handle as a whole", "`arap`"]);
     edit["method"] = json!({ "name": "arap" });
     edit["keys"] = json!([{ "frame": 1, "span": [0, 2], "handles": { "foot": {} } }]);
     take.edited(&edit, "no", &[])
@@ -259,6 +259,17 @@ fn a_mix_has_the_handles_of_one_sequence_and_the_details_of_the_other() {
             "{frame}"
         );
     }
+    // A share of the way is half of it.
+    mixed["mix"]["share"] = json!(0.5);
+    take.edited(&mixed, "half", &[]).done();
+    for frame in 0..FRAMES {
+        let [own, all, half] = ["in", "1", "half"].map(|folder| middle(&take.shape(folder, frame)));
+        assert!(half.distance(0.5 * (own + all)) < 1e-6, "{frame}");
+    }
+    mixed["mix"]["share"] = json!(1.5);
+    take.edited(&mixed, "no", &[])
+        .refused(1, &["mix.share is 1.5", "from 0 to 1"]);
+    mixed["mix"]["share"] = json!(1);
     let two = |sequence: &str| {
         let mut edit = mixed.clone();
         edit["mix"]["sequence"] = json!(sequence);

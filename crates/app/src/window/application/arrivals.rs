@@ -62,6 +62,12 @@ impl Application {
                         self.editor.handle(Event::Frame(frame, shape));
                     }
                 }
+                Message::MixFrame(stamp, name, frame, shape) => {
+                    if let Some(shape) = self.session.take_mix_frame(stamp, frame, shape) {
+                        self.editor.handle(Event::MixFrame(name, frame, shape));
+                    }
+                }
+                Message::MixChosen(chosen) => self.take_mix(chosen),
                 Message::Followed(stamp, following, frames) => {
                     if let Some(frames) = self.session.take_followed(stamp, frames) {
                         self.editor.handle(Event::Followed(following, frames));

@@ -59,6 +59,7 @@ impl Application {
             (
                 Purpose::Open
                 | Purpose::OpenSequence
+                | Purpose::Mix
                 | Purpose::ApplyEdit
                 | Purpose::Append
                 | Purpose::LoadCage
@@ -95,6 +96,7 @@ impl Application {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
             (Purpose::OpenSequence, Some(path)) => self.open_sequence(path),
+            (Purpose::Mix, Some(path)) => self.mix_with(&path),
             (Purpose::ApplyEdit, Some(path)) => self.ask_to_open(path),
             (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
             (Purpose::SaveAs, Some(path)) => self.save_as(path),

@@ -76,15 +76,18 @@ impl Application {
                 None => self.choose(Purpose::ApplyEdit),
             },
             FileCommand::MergeOptions => self.dialogs.merge.open = true,
-            FileCommand::Append | FileCommand::LoadCage | FileCommand::AddExample | FileCommand::AddMorphTarget(_) => {
-                match (command.unavailable_because(&self.editor), command) {
-                    (Some(why), _) => self.fail(why.to_owned()),
-                    (None, FileCommand::Append) => self.choose(Purpose::Append),
-                    (None, FileCommand::LoadCage) => self.choose(Purpose::LoadCage),
-                    (None, FileCommand::AddMorphTarget(target)) => self.load_morph_target(target),
-                    (None, _) => self.choose(Purpose::AddExample),
-                }
-            }
+            FileCommand::Append
+            | FileCommand::Mix
+            | FileCommand::LoadCage
+            | FileCommand::AddExample
+            | FileCommand::AddMorphTarget(_) => match (command.unavailable_because(&self.editor), command) {
+                (Some(why), _) => self.fail(why.to_owned()),
+                (None, FileCommand::Append) => self.choose(Purpose::Append),
+                (None, FileCommand::Mix) => self.choose(Purpose::Mix),
+                (None, FileCommand::LoadCage) => self.choose(Purpose::LoadCage),
+                (None, FileCommand::AddMorphTarget(target)) => self.load_morph_target(target),
+                (None, _) => self.choose(Purpose::AddExample),
+            },
             FileCommand::Weld(weld) => self.weld_anew(weld),
             FileCommand::Palette => self.dialogs.palette = Some(Palette::default()),
             FileCommand::Panel => self.layout.is_panel_hidden = !self.layout.is_panel_hidden,

@@ -11,6 +11,7 @@ mod file_commands;
 pub(in crate::window) mod frame;
 pub(in crate::window) mod layout;
 mod meshes;
+mod mixing;
 mod opening;
 mod queries;
 pub(in crate::window) mod redrawing;

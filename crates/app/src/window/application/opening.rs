@@ -29,6 +29,10 @@ impl Application {
             (true, Some(MeshSource::File(file))) => Source::Edited {
                 file: file.clone(),
                 edit: path,
+                sequence: self.session.open.as_ref().and_then(|open| {
+                    let sequence = open.sequence.as_ref()?;
+                    Some(sequence.path().to_owned())
+                }),
             },
             (true, _) => {
                 return self.fail(format!(
@@ -60,6 +64,13 @@ impl Application {
             self.session.follow(self.editor.following(), &self.workers);
         }
         let wanted = self.editor.view().wanted_frame;
+        if let Some((name, frame)) = self.editor.view().wanted_mix
+            && let Some(shape) = self.session.mix_frame(name, frame, &self.workers)
+        {
+            let name = name.to_owned();
+            self.editor.handle(Event::MixFrame(name, frame, Ok(shape)));
+            context.request_repaint();
+        }
         if let Some(frame) = wanted
             && let Some(shape) = self.session.frame(frame, &self.workers)
         {

@@ -60,6 +60,12 @@ fn request(purpose: Purpose) -> Request {
             "Models and point caches",
             MODELS_AND_CACHES,
         ),
+        Purpose::Mix => (
+            "Mix with a sequence: one of its frames, or its point cache",
+            Asked::ToOpen,
+            "Models and point caches",
+            MODELS_AND_CACHES,
+        ),
         Purpose::ApplyEdit => ("Apply an edit", Asked::ToOpen, "Edits", &["json"]),
         Purpose::Append => ("Append a file", Asked::ToOpen, "Models", MODELS),
         Purpose::LoadCage => ("Load a cage", Asked::ToOpen, "Models", MODELS),

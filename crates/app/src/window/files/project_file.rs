@@ -64,6 +64,13 @@ fn assembled(
         None => project,
     };
     let sequence = mesh.sequence.as_ref();
+    let mixed = project
+        .mixed_sequence()
+        .map(|named| relative(Path::new(named), files::folder_of(path)));
+    let project = match mixed {
+        Some(mixed) => project.mixed_with(mixed),
+        None => project,
+    };
     let project = project.of_sequence(sequence.map(|place| relative(place, files::folder_of(path))));
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
     let (kept, staged_mesh) = beside.unzip();
@@ -165,7 +172,7 @@ pub fn mesh_name(project: &Path) -> Option<String> {
 
 /// The path relative to `folder` if it is inside it, otherwise absolute; with `/` between folders, and names that are
 /// not UTF-8 in the form of [`files::name_as_text`].
-fn relative(path: &Path, folder: &Path) -> String {
+pub(super) fn relative(path: &Path, folder: &Path) -> String {
     let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (whole(path), whole(folder));
     files::path_as_text(path.strip_prefix(&folder).unwrap_or(&path))
@@ -199,7 +206,7 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     };
     let project = match Beginning::parse(&text).map_err(refuse)? {
         Beginning::Project(project) => *project,
-        Beginning::Edit(_) => {
+        Beginning::Edit(_) | Beginning::Sequence(_) => {
             return Err(refuse(pliant_editor::EditError::Project(
                 "it names no `mesh`, so it is an edit: give it to `pliant apply --edit`".to_owned(),
             )));
@@ -227,6 +234,11 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, EngineError> {
     };
     let folder = files::folder_of(path);
     let sequence = project.sequence().map(|named| files::path_of_text(folder, named));
+    let mixed = project.mixed_sequence().map(|named| files::path_of_text(folder, named));
+    let project = match mixed {
+        Some(mixed) => project.mixed_with(files::path_as_text(&mixed)),
+        None => project,
+    };
     let at = files::path_of_text(folder, &named);
     let beside = folder.join(at.file_name().unwrap_or_default());
     let (mut what, mut found) = ("missing", None);

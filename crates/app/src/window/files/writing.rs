@@ -146,11 +146,14 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
             ))
         }
         Content::Edit(edit, model) => {
-            let edit = edit.with_places(model).map_err(|source| EngineError::Edit {
+            let mut edit = edit.with_places(model).map_err(|source| EngineError::Edit {
                 edit: path.clone(),
                 source,
             })?;
             cancel.check().map_err(|_| EngineError::Interrupted)?;
+            if let Some(mix) = &mut edit.mix {
+                mix.sequence = project_file::relative(Path::new(&mix.sequence), files::folder_of(path));
+            }
             let text = edit.to_json();
             let staged = staging.stage([(path.clone(), text.as_bytes())])?;
             Ok(Ready::new(staged, WrittenKind::Edit))

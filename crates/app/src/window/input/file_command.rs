@@ -46,6 +46,8 @@ pub enum FileCommand {
     Append,
     /// Choose how parts are merged.
     MergeOptions,
+    /// Choose the sequence that leads handles of the open one.
+    Mix,
     /// Take a cage from a file.
     LoadCage,
     /// Take an example from a file of the same vertices.
@@ -102,9 +104,6 @@ impl FileCommand {
             Self::SaveAs | Self::SaveMorph if editor.document().animation().frames().is_some() => {
                 Some("A sequence has many shapes: save the project instead.")
             }
-            Self::ApplyEdit if editor.document().animation().frames().is_some() => {
-                Some("A sequence is open: apply the edit to its files by the command pliant sequence.")
-            }
             Self::ExportAnimation if editor.document().animation().frames().is_some() => {
                 Some("A sequence is open: choose Export frames… instead.")
             }
@@ -114,6 +113,14 @@ impl FileCommand {
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
                 (!has_keys).then_some("There are no keys: set some on the timeline first.")
+            }
+            Self::Mix if editor.document().animation().frames().is_none() => {
+                Some("No sequence is open: choose Open sequence… first.")
+            }
+            Self::Mix => {
+                let is_led = editor.document().animation().mix().is_some();
+                let selected = editor.view().selected.is_some();
+                (!is_led && !selected).then_some("No handle is selected: select the one that another sequence leads.")
             }
             Self::LoadCage => (!takes(AttachmentKind::ControlMesh))
                 .then_some("The method takes no cage: choose the method Cage first."),
@@ -159,6 +166,7 @@ impl FileCommand {
             | Self::Weld(_)
             | Self::Append
             | Self::MergeOptions
+            | Self::Mix
             | Self::LoadCage
             | Self::AddExample
             | Self::AddMorphTarget(_)
@@ -178,7 +186,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 29] = [
+    pub const LISTED: [Self; 30] = [
         Self::Open,
         Self::OpenSequence,
         Self::NewFromSample,
@@ -194,6 +202,7 @@ impl FileCommand {
         Self::ApplyEdit,
         Self::Append,
         Self::MergeOptions,
+        Self::Mix,
         Self::LoadCage,
         Self::AddExample,
         Self::SavePicture(PictureKind {
@@ -231,6 +240,7 @@ impl FileCommand {
             Self::Weld(_) => "Weld vertices",
             Self::Append => "Append a file…",
             Self::MergeOptions => "Merge options…",
+            Self::Mix => "Mix…",
             Self::LoadCage => "Load cage…",
             Self::AddExample => "Add example from file…",
             Self::AddMorphTarget(_) => "Add a morph target",
@@ -267,6 +277,7 @@ impl FileCommand {
             Self::Weld(_) => "weld merge distance doubles seams",
             Self::Append => "add import second scan part merge join combine",
             Self::MergeOptions => "join reach method fit settings",
+            Self::Mix => "sequence lead motion transfer handles other second blend",
             Self::LoadCage => "open import control mesh",
             Self::AddExample | Self::AddMorphTarget(_) => "open import pose shape blend morph in-between",
             Self::Palette => "palette search",

@@ -21,11 +21,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         let label = row_label(ui, "Method");
         let compared = editor.comparison().is_some();
         let width = ui.available_width() - COMPARE;
-        let (list, chosen) = choose_method(ui, "method", method, width);
-        list.labelled_by(label.id);
-        if let Some(chosen) = chosen {
-            commands.push(Command::SetMethod(editor.first_choice(chosen.declaration())));
-        }
+        choose_method(ui, editor, width, commands).labelled_by(label.id);
         if icon_choice(ui, editor, &Command::CompareMethods, compared, Glyph::LayoutGrid, None) {
             commands.push(Command::CompareMethods);
         }
@@ -139,10 +135,10 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     });
 }
 
-/// A list of all methods, and the one that was taken from it.
-pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) -> (egui::Response, Option<Method>) {
-    let mut chosen = None;
-    let list = ComboBox::from_id_salt(id)
+/// A list of all methods.
+fn choose_method(ui: &mut egui::Ui, editor: &Editor, width: f32, commands: &mut Outbox) -> egui::Response {
+    let present = editor.document().method();
+    let list = ComboBox::from_id_salt("method")
         .selected_text(present.declaration().title)
         .width(width)
         // As high as all methods together: nothing shows that a list scrolls.
@@ -157,15 +153,18 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
                     method_picture::paint(ui, place.rect, declaration.picture, place.fallback_text_color);
                 });
                 let paper = RichText::new(declaration.paper).weak().small();
-                let choice = ui
-                    .add(Button::selectable(is_present, (picture, declaration.title)).right_text(paper))
-                    .on_hover_text(declaration.explanation());
+                let button = Button::selectable(is_present, (picture, declaration.title)).right_text(paper);
+                let command = Command::SetMethod(editor.first_choice(declaration));
+                let why_not = editor.unavailable_because(&command).filter(|_| !is_present);
+                let choice = ui.add_enabled(why_not.is_none(), button);
+                let choice = choice.on_hover_text(declaration.explanation());
+                let choice = choice.on_disabled_hover_text(why_not.as_deref().unwrap_or_default());
                 if choice.clicked() && !is_present {
-                    chosen = Some((declaration.first_choice)());
+                    commands.push(command);
                 }
             }
         });
-    (list.response, chosen)
+    list.response
 }
 
 /// An option's name and its widget, which is disabled if the option has no effect.

@@ -16,7 +16,7 @@ use crate::window::threads::workers::Workers;
 const KEPT_BYTES: usize = 64 << 20;
 
 /// The displacements of a frame's surface vertices from the file's shape.
-type Shape = Arc<Vec<DVec3>>;
+pub type Shape = Arc<Vec<DVec3>>;
 
 /// The frames that are being read and those that were read last.
 #[derive(Default)]
@@ -27,8 +27,14 @@ pub struct FrameReads {
 }
 
 impl FrameReads {
-    /// The frame's shape if it is known. If not, it is read once the running read has ended.
-    pub fn request(&mut self, frame: usize, sequence: &Arc<OpenSequence>, workers: &Workers) -> Option<Shape> {
+    /// The frame's shape if it is known. If not, it is read once the running read has ended, and comes as a message.
+    pub fn request(
+        &mut self,
+        frame: usize,
+        read: impl FnOnce(&Watch) -> Result<Vec<DVec3>, EngineError> + Send + 'static,
+        message: impl Fn(Revision, Result<Shape, String>) -> Message + Clone + Send + 'static,
+        workers: &Workers,
+    ) -> Option<Shape> {
         if let Some((_, shape)) = self.kept.iter().find(|(kept, _)| *kept == frame) {
             return Some(Arc::clone(shape));
         }
@@ -37,16 +43,15 @@ impl FrameReads {
         }
         self.last += 1;
         self.reading.request(Revision(self.last), frame);
-        let (running, frame) = self.reading.start_next()?;
-        let (stamp, sequence) = (running.stamp, Arc::clone(sequence));
+        let (running, _) = self.reading.start_next()?;
+        let (stamp, failed) = (running.stamp, message.clone());
         workers.spawn(
             "frame",
             move || {
-                let read = sequence.displacements(frame, &Watch::cancelled_by(&running.cancel));
-                let shape = read.map(Arc::new).map_err(|error| error.to_string());
-                Message::Frame(stamp, frame, shape)
+                let shape = read(&Watch::cancelled_by(&running.cancel));
+                message(stamp, shape.map(Arc::new).map_err(|error| error.to_string()))
             },
-            move |sentence| Message::Frame(stamp, frame, Err(sentence)),
+            move |sentence| failed(stamp, Err(sentence)),
         );
         None
     }

@@ -3,6 +3,7 @@
 mod clause;
 mod following;
 mod frames;
+mod mixing;
 mod open_file;
 pub(in crate::window) mod opening;
 mod shapes;
@@ -24,6 +25,7 @@ use crate::window::files::writing::write;
 use crate::window::session::following::FrameSearch;
 use crate::window::session::frames::FrameReads;
 pub use crate::window::session::frames::meant_by;
+use crate::window::session::mixing::MixReads;
 pub use crate::window::session::open_file::OpenFile;
 pub use crate::window::session::opening::Source;
 use crate::window::session::opening::{absolute, open};
@@ -59,6 +61,8 @@ pub struct Session {
     pub to_append: Option<PathBuf>,
     /// The frames of the open sequence.
     frames: FrameReads,
+    /// The frames of the other sequence that leads its handles.
+    mix: MixReads,
     /// The body of the open sequence.
     following: FrameSearch,
     /// The running change of the mesh.
@@ -105,8 +109,34 @@ impl Session {
 
     /// A frame of the open sequence, if it is known; if not, it is read, off the window's thread.
     pub fn frame(&mut self, frame: usize, workers: &Workers) -> Option<Arc<Vec<DVec3>>> {
+        let sequence = Arc::clone(self.open.as_ref()?.sequence.as_ref()?);
+        let read = move |watch: &Watch| sequence.displacements(frame, watch);
+        let message = move |stamp, shape| Message::Frame(stamp, frame, shape);
+        self.frames.request(frame, read, message, workers)
+    }
+
+    /// A frame of the other sequence that leads handles of the open one, by the other one's name, if it is known; if not,
+    /// it is read, off the window's thread.
+    pub fn mix_frame(&mut self, name: &str, frame: usize, workers: &Workers) -> Option<Arc<Vec<DVec3>>> {
         let sequence = self.open.as_ref()?.sequence.as_ref()?;
-        self.frames.request(frame, sequence, workers)
+        self.mix.request(name, frame, sequence, workers)
+    }
+
+    /// Takes a frame of the other sequence that was read. Returns it if it is still wanted.
+    pub fn take_mix_frame(
+        &mut self,
+        stamp: Revision,
+        frame: usize,
+        shape: Result<Arc<Vec<DVec3>>, String>,
+    ) -> Option<Result<Arc<Vec<DVec3>>, String>> {
+        self.mix.take(stamp, frame, shape)
+    }
+
+    /// Checks off the window's thread that the sequence that a person means by a file can lead handles of the open one.
+    pub fn check_mix(&self, file: &Path, frame: usize, workers: &Workers) {
+        if let Some(sequence) = self.open.as_ref().and_then(|open| open.sequence.as_ref()) {
+            mixing::check(file, frame, sequence, workers);
+        }
     }
 
     /// Takes a frame that was read. Returns it if it belongs to the open sequence.
@@ -181,6 +211,7 @@ impl Session {
         self.stop_stitching();
         self.stitching = None;
         self.frames.forget();
+        self.mix.forget();
         self.following.forget();
         for (path, stamp) in opened.loaded.stamps() {
             self.known.note(path, stamp.clone());

@@ -43,6 +43,8 @@ pub enum Source {
         file: PathBuf,
         /// The edit or project.
         edit: PathBuf,
+        /// The sequence of whose frames the mesh is one.
+        sequence: Option<PathBuf>,
     },
     /// A project from a session that ended without saving.
     Recovered(PathBuf),
@@ -75,7 +77,11 @@ impl Source {
         match (file, edit) {
             (None, _) => Self::Sample,
             (Some(file), None) => Self::file(file),
-            (Some(file), Some(edit)) => Self::Edited { file, edit },
+            (Some(file), Some(edit)) => Self::Edited {
+                file,
+                edit,
+                sequence: None,
+            },
         }
     }
 
@@ -103,7 +109,8 @@ impl Source {
                 chosen: chosen.as_deref().map(absolute),
                 open,
             },
-            Self::Edited { file, edit } => Self::Edited {
+            Self::Edited { file, edit, sequence } => Self::Edited {
+                sequence: sequence.as_deref().map(absolute),
                 file: absolute(&file),
                 edit: absolute(&edit),
             },
@@ -127,7 +134,7 @@ fn saved_as(project: Option<&Path>) -> SavedAs {
 }
 
 /// Reads, welds and uploads.
-pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, EngineError> {
+pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, EngineError> {
     let weld = WeldOptions::default();
     let mut beginning = None;
     let mut stamps = Vec::new();
@@ -135,7 +142,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let mut unsaved = None;
     let (mut project, mut recovered) = (None, None);
     let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
-    let (loaded, path, source) = match source {
+    let (loaded, path, source) = match asked {
         Source::Sample => (load_sample(&weld, watch)?, None, MeshSource::Sample),
         Source::File(path) if !pliant_engine::is_project(path) => (
             pliant_engine::load(path, &weld, watch)?,
@@ -148,7 +155,12 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             let loaded = pliant_engine::load(&mesh, &weld, watch)?;
             (loaded, Some(mesh.clone()), MeshSource::File(mesh))
         }
-        Source::Edited { file, edit } => {
+        Source::Edited {
+            file,
+            edit,
+            sequence: place,
+        } => {
+            sequence = place.clone().map(|place| (place, None));
             // This comes before reading: a write in between shows as a change.
             stamps.push((edit.clone(), Stamp::of(edit)?));
             let mut read = pliant_engine::read_edit(edit, watch)?;
@@ -192,7 +204,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             let opened = project_file::read(path, watch)?;
             stamps.push((path.clone(), opened.stamp));
             sequence = opened.sequence.map(|place| (place, None));
-            match source {
+            match asked {
                 Source::Recovered(_) => {
                     recovered = Some(path.clone());
                     project = opened_project(path);
@@ -228,6 +240,9 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             let sequence = OpenSequence::of(&path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
             notes.extend(sequence.note().map(str::to_owned));
             let shown = chosen.and_then(|file| sequence.frame_of(file));
+            if let (Some(Beginning::Edit(edit)), Source::Edited { edit: path, .. }) = (&beginning, asked) {
+                beginning = Some(sequence.applied(edit, path, watch)?.into());
+            }
             Some((Arc::new(sequence), shown))
         }
     };

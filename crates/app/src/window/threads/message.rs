@@ -35,6 +35,10 @@ pub enum Message {
     /// A frame of the open sequence was read: the displacements of its surface vertices from the file's shape, or the
     /// reason why not.
     Frame(Revision, usize, Result<Arc<Vec<DVec3>>, String>),
+    /// A frame of the other sequence of this name, which leads handles, was read, or the reason why not.
+    MixFrame(Revision, String, usize, Result<Arc<Vec<DVec3>>, String>),
+    /// A sequence that can lead handles of the open one was chosen, or the reason why it can't.
+    MixChosen(Result<PathBuf, String>),
     /// The open sequence was followed through all frames, or the reason why not.
     Followed(Revision, Following, Result<Vec<FollowedFrame>, String>),
     /// The open file's triangles were changed, or the reason why not.
@@ -185,6 +189,8 @@ pub enum Purpose {
     ApplyEdit,
     /// To put beside the open shape.
     Append,
+    /// To take a sequence from that leads handles of the open one: one of its files, or its point cache.
+    Mix,
     /// To take a cage from.
     LoadCage,
     /// To take an example from.

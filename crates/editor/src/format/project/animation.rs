@@ -10,6 +10,7 @@ use crate::ease::Ease;
 use crate::format::edit_error::EditError;
 use crate::format::filters::{FilterEntry, check_filters};
 use crate::format::footprints::{FootprintEntry, check_footprints};
+use crate::format::mix::MixEntry;
 use crate::format::path::PathEntry;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -31,6 +32,9 @@ pub(super) struct StoredAnimation {
     /// The footprints of handles; each names its handle by its number.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     footprints: Vec<FootprintEntry>,
+    /// The sequence that leads handles, which it names by their numbers; its path is like the mesh's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) mix: Option<MixEntry>,
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -86,6 +90,9 @@ impl StoredAnimation {
                 .iter()
                 .map(|(id, footprints)| FootprintEntry::of(&id.0.to_string(), footprints))
                 .collect(),
+            mix: animation
+                .mix()
+                .and_then(|mix| MixEntry::of(mix, |id| Some(id.0.to_string()))),
         })
     }
 
@@ -145,6 +152,11 @@ impl StoredAnimation {
             if let Ok(handle) = footprint.handle.parse() {
                 animation = animation.with_footprints(HandleId(handle), Some(footprint.footprints()));
             }
+        }
+        if let Some(mix) = &self.mix {
+            mix.check().map_err(|error| error.under("animation"))?;
+            let numbers = mix.handles.iter().filter_map(|handle| handle.parse().ok());
+            animation = animation.with_mix(Some(mix.mix(numbers.map(HandleId).collect())));
         }
         Ok(animation)
     }

@@ -297,6 +297,21 @@ impl Project {
         self.sequence.as_deref()
     }
 
+    /// The other sequence that leads handles, by its path.
+    pub fn mixed_sequence(&self) -> Option<&str> {
+        let mix = self.animation.as_ref()?.mix.as_ref()?;
+        Some(&mix.sequence)
+    }
+
+    /// The same with another path of the sequence that leads handles, if there is one.
+    #[must_use]
+    pub fn mixed_with(mut self, path: String) -> Self {
+        if let Some(mix) = self.animation.as_mut().and_then(|animation| animation.mix.as_mut()) {
+            mix.sequence = path;
+        }
+        self
+    }
+
     /// The same of a sequence at this path.
     #[must_use]
     pub fn of_sequence(self, path: Option<String>) -> Self {

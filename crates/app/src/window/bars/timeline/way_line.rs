@@ -1,8 +1,15 @@
 //! The way of the selected handle through a sequence: its own, filtered, or held by footprints, and the numbers.
 
-use eframe::egui;
-use pliant_editor::{Command, Editor, FilterKind, GroundAxis, Handle, HandleFilter, HandleFootprints, UpAxis};
+use std::collections::BTreeSet;
+use std::path::Path;
 
+use eframe::egui;
+use pliant_editor::{
+    Command, Editor, FilterKind, GroundAxis, Handle, HandleFilter, HandleFootprints, HandleId, HandleMix, UpAxis,
+};
+
+use crate::files::names::file_name;
+use crate::window::input::file_command::FileCommand;
 use crate::window::widgets::number_field::{dragged, number_field};
 use crate::window::widgets::outbox::Outbox;
 
@@ -36,14 +43,17 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let id = handle.id;
     let filter = animation.filters().get(&id).copied();
     let footprints = animation.footprints().get(&id).copied();
+    let mix = animation.mix().map(|mix| &**mix);
+    let led = mix.filter(|mix| mix.leads(id));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.label(egui::RichText::new(format!("Way of {}", handle.name)).weak());
-        let own = match footprints {
-            Some(_) => Command::SetFootprints(id, None),
-            None => Command::SetFilter(id, None),
+        let own = match (footprints, led) {
+            (Some(_), _) => Command::SetFootprints(id, None),
+            (None, Some(mix)) => Command::SetMix(Some(mix.without(id))),
+            (None, None) => Command::SetFilter(id, None),
         };
-        let is_own = filter.is_none() && footprints.is_none();
+        let is_own = filter.is_none() && footprints.is_none() && led.is_none();
         let effect = "Leaves the handle's way through the frames as it is.";
         choice(ui, editor, ("Own way", effect), is_own, own, commands);
         for (kind, name, effect) in FILTERS {
@@ -62,6 +72,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             command,
             commands,
         );
+        mix_choice(ui, editor, id, mix, commands);
+        if let Some(mix) = led {
+            mix_numbers(ui, mix, commands);
+        }
         if let Some(filter) = filter {
             filter_numbers(
                 ui,
@@ -100,6 +114,57 @@ fn choice(
     if response.clicked() && !is_chosen {
         commands.push(command);
     }
+}
+
+/// The choice of another sequence that leads the handle.
+fn mix_choice(ui: &mut egui::Ui, editor: &Editor, id: HandleId, mix: Option<&HandleMix>, commands: &mut Outbox) {
+    let led = |mix: &HandleMix| Command::SetMix(Some(mix.with(id)));
+    let effect = "Lets another sequence with the same vertices and faces lead the handle, which keeps its shape.";
+    match mix {
+        Some(mix) => choice(ui, editor, ("Mix", effect), mix.leads(id), led(mix), commands),
+        None => {
+            let none = HandleMix {
+                sequence: String::new(),
+                handles: BTreeSet::new(),
+                share: 1.0,
+            };
+            let why_not = editor.unavailable_because(&led(&none));
+            let button = ui.add_enabled(why_not.is_none(), egui::Button::selectable(false, "Mix…"));
+            let button = button.on_hover_text(effect);
+            let button = match why_not {
+                Some(reason) => button.on_disabled_hover_text(reason),
+                None => button,
+            };
+            if button.clicked() {
+                commands.push_file(FileCommand::Mix);
+            }
+        }
+    }
+}
+
+/// The other sequence and its share.
+fn mix_numbers(ui: &mut egui::Ui, present: &HandleMix, commands: &mut Outbox) {
+    let name = file_name(Path::new(&present.sequence));
+    let button = ui.button(format!("{name}…"));
+    let hint = format!(
+        "Chooses another sequence that leads handles, in place of {}.",
+        present.sequence
+    );
+    if button.on_hover_text(hint).clicked() {
+        commands.push_file(FileCommand::Mix);
+    }
+    let mut share = present.share;
+    let field = number_field(ui, &mut share, |ui, share| {
+        let field = dragged(ui, share, &[]).range(HandleMix::SHARE_RANGE).speed(0.005);
+        ui.add(field.prefix("Share ").max_decimals(2))
+    });
+    let field = field.on_hover_text("Sets the share of the way to where the other sequence has its handles.");
+    commands.adjust(&field, || {
+        Command::SetMix(Some(HandleMix {
+            share,
+            ..present.clone()
+        }))
+    });
 }
 
 /// Footprints that fit the file's size.
