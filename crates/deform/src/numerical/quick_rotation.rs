@@ -4,7 +4,7 @@
 //! last one negative if S mirrors. The polynomial has no cubic term, and its others are sums over S, so that Newton's
 //! method finds the largest eigenvalue from above without a rotation of the matrix: in a twentieth of the time that
 //! Jacobi's method takes for all eigenvectors. Where the two largest ones are close, the vector is inaccurate or missing,
-//! so the caller checks and refines it.
+//! so the caller refines it and checks that it is the maximum.
 
 use glam::{DMat3, DQuat};
 
@@ -87,7 +87,10 @@ mod tests {
                 assert!(off < 1e-9, "{stretches} {k}: {off:e}");
             }
         }
-        // Every half turn is as good.
-        assert!(quick_rotation(&-DMat3::IDENTITY).is_none());
+        // Every half turn is the best: tr(Rᵀ S) is 1.
+        if let Some(found) = quick_rotation(&-DMat3::IDENTITY) {
+            let r = DMat3::from_quat(found);
+            assert!((1.0 + r.x_axis.x + r.y_axis.y + r.z_axis.z).abs() < 1e-6, "{found}");
+        }
     }
 }

@@ -19,7 +19,8 @@ pub(crate) struct MixWork {
 impl MixWork {
     /// Returns true if the places in a frame must be read first.
     pub(super) fn awaits(&self, frame: usize, paint: Version, mix: &HandleMix) -> bool {
-        !self.has_failed && !(self.is_of(paint, mix) && self.places.contains_key(&frame))
+        let is_known = self.is_of(paint, mix) && self.places.contains_key(&frame);
+        !(self.has_failed || is_known)
     }
 
     /// Takes the places of all handles in a frame.

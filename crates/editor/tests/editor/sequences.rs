@@ -11,7 +11,7 @@ use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_editor::{
     Beginning, Command, EditError, EditFile, Event, FollowedFrame, FollowedHandle, HandleFilter, HandleId, HandlePlace,
-    HandleTransform, KeyId, SequenceEdit, ToolMode, middle_of,
+    HandleTransform, KeyId, KeySpace, SequenceEdit, ToolMode, middle_of,
 };
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
@@ -379,9 +379,7 @@ fn an_exported_edit_on_the_sequence_again_gives_the_same_frames() {
     let lift = |rig: &Rig| rig.editor.document().handles()[0].affine().translation;
     go_to(&mut rig, 10);
     assert!(lift(&half).length() < 0.7 * lift(&rig).length());
-    for key in &mut edit.keys {
-        key.space = pliant_editor::KeySpace::World;
-    }
+    edit.keys.iter_mut().for_each(|key| key.space = KeySpace::World);
     let refused = applied(&rig, &edit, 10).err().unwrap().to_string();
     assert!(refused.contains("keys[0]") && refused.contains("`space`"), "{refused}");
 }
