@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_deform::{Budget, Role};
-use pliant_editor::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector, Setup, Start, Until};
+use pliant_editor::{
+    EditError, EditFile, Editor, Event, FieldEntry, HandleEntry, HandleTransform, InlineExecutor, Selector, Setup,
+    Start, ToolMode, Until,
+};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
-use crate::rig::{Random, weld};
+use crate::rig::{CENTRE_PX, Random, Rig, weld};
 
 /// A vase-like body of a scan's kind: `rings` and `segments` give other vertices on the same surface.
 fn body(rings: usize, segments: usize) -> Drawn {
@@ -238,6 +241,55 @@ fn another_mesh_of_the_same_surface_gets_the_same_sets_and_nearly_the_same_shape
             );
         }
     }
+}
+
+/// The largest distance of a shape from the nearest vertex of another one at rest, moved by its displacement.
+fn apart((a, on_a): (&Model, &[DVec3]), (b, on_b): (&Model, &[DVec3])) -> f64 {
+    let each = a.surface.positions.iter().zip(on_a).map(|(p, d)| {
+        let others = b.surface.positions.iter().zip(on_b);
+        let nearest = others.min_by(|x, y| x.0.distance(*p).total_cmp(&y.0.distance(*p)));
+        nearest.unwrap().1.distance(*d)
+    });
+    each.fold(0.0, f64::max)
+}
+
+#[test]
+fn what_was_painted_and_corrected_on_the_bent_shape_stays_where_it_was_seen() {
+    for method in ["bilaplacian", "arap"] {
+        let mut rig = Rig::open(body(40, 32));
+        rig.choose(method);
+        rig.paint_handle();
+        rig.move_by('z', "0.4");
+        rig.drain();
+        // More of the handle, which stays where it is seen.
+        rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(60.0, 90.0)]);
+        rig.drain();
+        let shape = rig.editor.view().displacements.to_vec();
+        let diagonal = rig.model.bounds().unwrap().diagonal();
+        let edit = exported(&rig.editor.edit_file().unwrap(), &rig.model);
+        assert!(edit.kept.is_some());
+        let other = weld(body(57, 45));
+        let placed = edit.placed(&other).unwrap().unwrap();
+        assert!(placed.matched.left_out.is_empty(), "{:?}", placed.matched);
+        let seen = open_with(&other, placed.edit);
+        let far = apart((&other, &seen), (&rig.model, &shape));
+        assert!(far < 0.03 * diagonal, "{method}: {far} of {diagonal}");
+    }
+}
+
+/// The shape that a window shows after it has opened a mesh with an edit.
+fn open_with(model: &Arc<Model>, edit: EditFile) -> Vec<DVec3> {
+    let jobs = InlineExecutor::new();
+    let editor = Editor::new(Box::new(jobs.clone()));
+    let mut rig = Rig::of(editor, jobs, Arc::clone(model));
+    rig.send(Event::Opened {
+        model: Arc::clone(model),
+        name: String::new(),
+        beginning: Some(edit.into()),
+    });
+    rig.drain();
+    assert_eq!(rig.editor.view().problem, None);
+    rig.editor.view().displacements.to_vec()
 }
 
 #[test]

@@ -132,7 +132,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
     let mut beginning = None;
     let mut stamps = Vec::new();
     let mut notes = Vec::new();
-    let mut unsaved = None;
+    let (mut unsaved, mut done) = (None, None);
     let (mut project, mut recovered) = (None, None);
     let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
     let (loaded, path, source) = match source {
@@ -160,6 +160,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
             })?;
             if let Some((other, matched)) = placed {
                 notes.push(as_sentence(&matched.sentence()));
+                done = notes.first().cloned();
                 read = other;
             }
             beginning = Some(read);
@@ -255,5 +256,6 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
         unsaved,
         stamps,
         notes,
+        done,
     }))
 }
