@@ -50,7 +50,7 @@ impl EditFile {
             let parts = other.whole_parts(select, &format!("loose[{}].select", index + 1))?;
             Ok((parts, *loose))
         });
-        let kept = match self.kept.as_ref().filter(|_| !self.handles.is_empty()) {
+        let kept = match &self.kept {
             Some(kept) => other.kept(kept, &self.handles, &mut matched.left_out)?,
             None => None,
         };

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_deform::{Budget, Role};
 use pliant_editor::{
-    EditError, EditFile, Editor, Event, FieldEntry, HandleEntry, HandleTransform, InlineExecutor, Selector, Setup,
-    Start, ToolMode, Until,
+    Command, Correction, CorrectionBrush, EditError, EditFile, Editor, Event, FieldEntry, HandleEntry, HandleTransform,
+    InlineExecutor, Selector, Setup, Start, ToolMode, Until,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
@@ -255,15 +255,38 @@ fn apart((a, on_a): (&Model, &[DVec3]), (b, on_b): (&Model, &[DVec3])) -> f64 {
 
 #[test]
 fn what_was_painted_and_corrected_on_the_bent_shape_stays_where_it_was_seen() {
-    for method in ["bilaplacian", "arap"] {
+    let ways = ["painted", "corrected", "painted and corrected"];
+    for (method, way) in ["bilaplacian", "arap"]
+        .into_iter()
+        .flat_map(|method| ways.map(|way| (method, way)))
+    {
         let mut rig = Rig::open(body(40, 32));
         rig.choose(method);
         rig.paint_handle();
         rig.move_by('z', "0.4");
         rig.drain();
-        // More of the handle, which stays where it is seen.
-        rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(60.0, 90.0)]);
-        rig.drain();
+        if way != "corrected" {
+            // More of the handle, which stays where it is seen.
+            rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(60.0, 90.0)]);
+            rig.drain();
+        }
+        if way != "painted" {
+            rig.command(Command::SetTool(ToolMode::Correct));
+            rig.command(Command::SetCorrection(CorrectionBrush {
+                correction: Correction::Grab,
+                ..CorrectionBrush::default()
+            }));
+            rig.command(Command::SetBrushRadius(60.0));
+            let from = CENTRE_PX - DVec2::new(90.0, 60.0);
+            rig.swipe(&[from, from - DVec2::new(15.0, 10.0), from - DVec2::new(40.0, 20.0)]);
+            rig.drain();
+            assert!(
+                rig.editor
+                    .document()
+                    .kept()
+                    .is_some_and(|kept| kept.corrections.is_some())
+            );
+        }
         let shape = rig.editor.view().displacements.to_vec();
         let diagonal = rig.model.bounds().unwrap().diagonal();
         let edit = exported(&rig.editor.edit_file().unwrap(), &rig.model);
@@ -273,7 +296,7 @@ fn what_was_painted_and_corrected_on_the_bent_shape_stays_where_it_was_seen() {
         assert!(placed.matched.left_out.is_empty(), "{:?}", placed.matched);
         let seen = open_with(&other, placed.edit);
         let far = apart((&other, &seen), (&rig.model, &shape));
-        assert!(far < 0.03 * diagonal, "{method}: {far} of {diagonal}");
+        assert!(far < 0.03 * diagonal, "{method}, {way}: {far} of {diagonal}");
     }
 }
 
