@@ -42,9 +42,9 @@ impl MatchedByPlace {
             false => "",
         };
         let mut sentence = format!(
-            "the edit was made on another mesh and is matched by place: {}{others} has a partner within {}",
-            parts.join(", "),
-            rounded(self.within)
+            "the edit was made on another mesh and is matched by place: within {} it finds {}{others}",
+            rounded(self.within),
+            parts.join(", ")
         );
         for left_out in &self.left_out {
             sentence = format!("{sentence}; {left_out}");

@@ -280,10 +280,8 @@ impl<'a> Other<'a> {
             true => Some(kept.clone()),
             false => kept.clone().for_another_method(),
         };
-        let Some(kept) = kept else {
-            left_out.push("its shape is solved anew".to_owned());
-            return Ok(None);
-        };
+        // Without a person's work the shape is the solution, which is found anew.
+        let Some(kept) = kept else { return Ok(None) };
         let corrections = corrections.map(|corrections| self.displacements(&corrections));
         Ok(Some(kept.on_other(self.mesh.model, &values, corrections.as_deref())))
     }
