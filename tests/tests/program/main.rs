@@ -19,6 +19,7 @@ mod identity;
 mod neighbours;
 mod normals;
 mod outputs;
+mod places;
 mod project;
 mod scans;
 mod sequence;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use pliant_mesh::{Model, WeldOptions};
 
 use super::json::parse;
-use super::placed_edit::MatchedByPlace;
+use super::matched_by_place::MatchedByPlace;
 use super::project::StoredKept;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, ExampleEntry, Project, SequenceEdit, Setup};

@@ -62,12 +62,6 @@ impl StoredCarries {
 
 impl StoredKept {
     pub(crate) fn of(kept: &KeptShape, model: &Model) -> Self {
-        let stored = |field: &[DVec3]| {
-            Field::of(model, |vertex| {
-                let value = field[vertex.index()];
-                (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
-            })
-        };
         let handles = kept.targets.iter();
         Self {
             method: None,
@@ -84,8 +78,11 @@ impl StoredKept {
                 .as_ref()
                 .map(|controls| controls.iter().map(|point| point.to_array()).collect()),
             weights: kept.weights.clone(),
-            shape: stored(&kept.shape),
-            corrections: kept.corrections.as_ref().and_then(|corrections| stored(corrections)),
+            shape: stored(&kept.shape, model),
+            corrections: kept
+                .corrections
+                .as_ref()
+                .and_then(|corrections| stored(corrections, model)),
             carries: match kept.carries {
                 Carries::Difference => StoredCarries::Difference,
                 Carries::Corrections => StoredCarries::Corrections,
@@ -136,18 +133,38 @@ impl StoredKept {
         })
     }
 
-    /// The same with its fields on another mesh; `other` gets each with its name.
-    pub(crate) fn with_fields(
-        self,
-        other: impl Fn(&Field, &str) -> Result<Option<Field>, EditError>,
-    ) -> Result<Self, EditError> {
-        let field =
-            |field: &Option<Field>, name| Ok(field.as_ref().map(|field| other(field, name)).transpose()?.flatten());
-        Ok(Self {
-            shape: field(&self.shape, "kept: shape")?,
-            corrections: field(&self.corrections, "kept: corrections")?,
+    /// The map of a handle with the shape, by its place in the list.
+    pub(crate) fn map_of(&self, handle: usize) -> Option<DAffine3> {
+        Some(DAffine3::from_cols_array(
+            self.handles.get(&u32::try_from(handle).ok()?)?,
+        ))
+    }
+
+    /// The shape's displacement of each of `count` drawn vertices.
+    ///
+    /// # Errors
+    /// Those of [`Field::by_number`].
+    pub(crate) fn shape_by_number(&self, count: usize) -> Result<Vec<DVec3>, EditError> {
+        displacements(self.shape.as_ref(), "kept: shape", count)
+    }
+
+    /// The same for the corrections by hand; `None` without any.
+    ///
+    /// # Errors
+    /// Those of [`Field::by_number`].
+    pub(crate) fn corrections_by_number(&self, count: usize) -> Result<Option<Vec<DVec3>>, EditError> {
+        let corrections = self.corrections.as_ref();
+        let field = corrections.map(|field| displacements(Some(field), "kept: corrections", count));
+        field.transpose()
+    }
+
+    /// The same with these displacements of the surface's vertices of another mesh.
+    pub(crate) fn on_other(self, model: &Model, shape: &[DVec3], corrections: Option<&[DVec3]>) -> Self {
+        Self {
+            shape: stored(shape, model),
+            corrections: corrections.and_then(|corrections| stored(corrections, model)),
             ..self
-        })
+        }
     }
 
     /// The same as a shape that `method` has made.
@@ -177,4 +194,23 @@ impl StoredKept {
         self.curves = curves.filter_map(|(id, curve)| Some((place(id)?, curve))).collect();
         self
     }
+}
+
+/// Displacements without those that are zero.
+fn stored(field: &[DVec3], model: &Model) -> Option<Field> {
+    Field::of(model, |vertex| {
+        let value = field[vertex.index()];
+        (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
+    })
+}
+
+fn displacements(field: Option<&Field>, name: &str, count: usize) -> Result<Vec<DVec3>, EditError> {
+    let Some(field) = field else {
+        return Ok(vec![DVec3::ZERO; count]);
+    };
+    Ok(field
+        .by_number(name, count)?
+        .into_iter()
+        .map(DVec3::from_array)
+        .collect())
 }

@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use pliant_deform::{CONTINUITY_RANGE, Loose, Role};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::field::{FieldEntry, lowest_file_vertices};
+use super::other_mesh::is_beside;
 use super::places::{Meaning, Oriented, Painted, Places, sample};
 use super::selector::Selector;
 use super::setup::Setup;
+use crate::document::HandleId;
 
-/// A painted field may be off by this where it has too many places: its logarithm for a stiffness.
+/// A painted field may be off by this where it would have too many places: its logarithm for a stiffness.
 const FIELD_TOLERANCE: f64 = 0.02;
 
 /// A displacement may be off by this share of the box's diagonal there.
@@ -98,26 +100,54 @@ fn fields(setup: &Setup, edit: &EditFile, model: &Model) -> Result<Vec<Painted>,
         false => DVec3::ZERO,
     });
     let continuity = edit.painted_continuity(model)?.into_iter();
-    let mut fields = vec![
-        Painted {
-            values: stiffness.collect(),
-            tolerance: FIELD_TOLERANCE,
-        },
-        Painted {
-            values: continuity.map(|value| DVec3::X * value).collect(),
-            tolerance: FIELD_TOLERANCE,
-        },
-    ];
-    if let Some(kept) = &setup.kept
-        && let Some(corrections) = &kept.shape.corrections
-    {
-        for (values, share) in [(corrections, 1.0), (&kept.shape.shape, 10.0)] {
-            fields.push(Painted {
-                values: values.to_vec(),
-                tolerance: share * SHAPE_TOLERANCE * diagonal,
-            });
+    let numbers = |values: Vec<DVec3>| Painted {
+        values,
+        tolerance: FIELD_TOLERANCE,
+        is_exact: true,
+    };
+    let continuity = continuity.map(|value| DVec3::X * value);
+    let mut fields = vec![numbers(stiffness.collect()), numbers(continuity.collect())];
+    if let Some(kept) = &setup.kept {
+        let shape = |values: &[DVec3], is_exact| Painted {
+            values: values.to_vec(),
+            tolerance: SHAPE_TOLERANCE * diagonal,
+            is_exact,
+        };
+        fields.extend(
+            kept.shape
+                .corrections
+                .as_ref()
+                .map(|corrections| shape(corrections, true)),
+        );
+        if has_painted_on_bent(setup, model) {
+            fields.push(shape(&kept.shape.shape, false));
         }
     }
     fields.retain(|field| field.values.iter().any(|value| *value != field.values[0]));
     Ok(fields)
+}
+
+/// Returns true if vertices of a handle are not where it moves them, because they were painted in the bent shape.
+fn has_painted_on_bent(setup: &Setup, model: &Model) -> bool {
+    let Some(kept) = &setup.kept else { return false };
+    let maps: Vec<Option<DAffine3>> = (0..)
+        .zip(&setup.handles)
+        .map(|(place, handle)| {
+            kept.shape
+                .targets
+                .get(&HandleId(place))
+                .filter(|_| handle.line.is_none())
+                .copied()
+        })
+        .collect();
+    let diagonal = model.bounds().map_or(0.0, |bounds| bounds.diagonal());
+    let each = setup
+        .roles
+        .iter()
+        .zip(&model.surface.positions)
+        .zip(kept.shape.shape.iter());
+    each.into_iter().any(|((role, position), displacement)| {
+        let Role::Handle(handle) = *role else { return false };
+        maps[usize::from(handle)].is_some_and(|map| is_beside(map, *position, *displacement, diagonal))
+    })
 }

@@ -5,10 +5,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_deform::{Budget, Role};
-use pliant_editor::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector, Setup, Start, Until};
+use pliant_editor::{
+    Command, Correction, CorrectionBrush, EditError, EditFile, Editor, Event, FieldEntry, HandleEntry, HandleTransform,
+    InlineExecutor, Selector, Setup, Start, ToolMode, Until,
+};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
-use crate::rig::{Random, weld};
+use crate::rig::{CENTRE_PX, Random, Rig, weld};
 
 /// A vase-like body of a scan's kind: `rings` and `segments` give other vertices on the same surface.
 fn body(rings: usize, segments: usize) -> Drawn {
@@ -238,6 +241,78 @@ fn another_mesh_of_the_same_surface_gets_the_same_sets_and_nearly_the_same_shape
             );
         }
     }
+}
+
+/// The largest distance of a shape from the nearest vertex of another one at rest, moved by its displacement.
+fn apart((a, on_a): (&Model, &[DVec3]), (b, on_b): (&Model, &[DVec3])) -> f64 {
+    let each = a.surface.positions.iter().zip(on_a).map(|(p, d)| {
+        let others = b.surface.positions.iter().zip(on_b);
+        let nearest = others.min_by(|x, y| x.0.distance(*p).total_cmp(&y.0.distance(*p)));
+        nearest.unwrap().1.distance(*d)
+    });
+    each.fold(0.0, f64::max)
+}
+
+#[test]
+fn what_was_painted_and_corrected_on_the_bent_shape_stays_where_it_was_seen() {
+    let ways = ["painted", "corrected", "painted and corrected"];
+    for (method, way) in ["bilaplacian", "arap"]
+        .into_iter()
+        .flat_map(|method| ways.map(|way| (method, way)))
+    {
+        let mut rig = Rig::open(body(40, 32));
+        rig.choose(method);
+        rig.paint_handle();
+        rig.move_by('z', "0.4");
+        rig.drain();
+        if way != "corrected" {
+            // More of the handle, which stays where it is seen.
+            rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(60.0, 90.0)]);
+            rig.drain();
+        }
+        if way != "painted" {
+            rig.command(Command::SetTool(ToolMode::Correct));
+            rig.command(Command::SetCorrection(CorrectionBrush {
+                correction: Correction::Grab,
+                ..CorrectionBrush::default()
+            }));
+            rig.command(Command::SetBrushRadius(60.0));
+            let from = CENTRE_PX - DVec2::new(90.0, 60.0);
+            rig.swipe(&[from, from - DVec2::new(15.0, 10.0), from - DVec2::new(40.0, 20.0)]);
+            rig.drain();
+            assert!(
+                rig.editor
+                    .document()
+                    .kept()
+                    .is_some_and(|kept| kept.corrections.is_some())
+            );
+        }
+        let shape = rig.editor.view().displacements.to_vec();
+        let diagonal = rig.model.bounds().unwrap().diagonal();
+        let edit = exported(&rig.editor.edit_file().unwrap(), &rig.model);
+        assert!(edit.kept.is_some());
+        let other = weld(body(57, 45));
+        let placed = edit.placed(&other).unwrap().unwrap();
+        assert!(placed.matched.left_out.is_empty(), "{:?}", placed.matched);
+        let seen = open_with(&other, placed.edit);
+        let far = apart((&other, &seen), (&rig.model, &shape));
+        assert!(far < 0.03 * diagonal, "{method}, {way}: {far} of {diagonal}");
+    }
+}
+
+/// The shape that a window shows after it has opened a mesh with an edit.
+fn open_with(model: &Arc<Model>, edit: EditFile) -> Vec<DVec3> {
+    let jobs = InlineExecutor::new();
+    let editor = Editor::new(Box::new(jobs.clone()));
+    let mut rig = Rig::of(editor, jobs, Arc::clone(model));
+    rig.send(Event::Opened {
+        model: Arc::clone(model),
+        name: String::new(),
+        beginning: Some(edit.into()),
+    });
+    rig.drain();
+    assert_eq!(rig.editor.view().problem, None);
+    rig.editor.view().displacements.to_vec()
 }
 
 #[test]

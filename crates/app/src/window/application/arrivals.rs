@@ -7,7 +7,7 @@ use pliant_mesh::Cancel;
 
 use crate::window::application::Application;
 use crate::window::dialogs::question::Question;
-use crate::window::panels::notes::Notes;
+use crate::window::panels::notes::{Note, Notes};
 use crate::window::session::OpenFile;
 use crate::window::threads::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use crate::window::threads::workers::PoseSource;
@@ -128,6 +128,7 @@ impl Application {
             displacements,
             beginning,
             notes,
+            done,
             recovered,
             unsaved,
             project,
@@ -148,7 +149,7 @@ impl Application {
         self.viewport
             .show(Shown::new(drawing, surface, displacements, &loaded.model));
         self.notes = Notes {
-            headline: None,
+            headline: done.map(Note::Done),
             about_file: notes,
             open_borders: Vec::new(),
         };

@@ -139,7 +139,7 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
     let mut beginning = None;
     let mut stamps = Vec::new();
     let mut notes = Vec::new();
-    let mut unsaved = None;
+    let (mut unsaved, mut done) = (None, None);
     let (mut project, mut recovered) = (None, None);
     let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
     let (loaded, path, source) = match asked {
@@ -172,6 +172,7 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
             })?;
             if let Some((other, matched)) = placed {
                 notes.push(as_sentence(&matched.sentence()));
+                done = notes.first().cloned();
                 read = other;
             }
             beginning = Some(read);
@@ -270,5 +271,6 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
         unsaved,
         stamps,
         notes,
+        done,
     }))
 }

@@ -144,6 +144,8 @@ pub struct ModelToShow {
     pub stamps: Vec<(PathBuf, Stamp)>,
     /// Notes for a person about the file, a sentence each.
     pub notes: Vec<String>,
+    /// What was done while it was opened, for the person to see at once.
+    pub done: Option<String>,
 }
 
 /// A new shape of the open file, ready to be shown and edited.

@@ -30,10 +30,12 @@ pub(in crate::format) struct Meaning {
     pub numbers: Vec<u32>,
 }
 
-/// A field, and how far a value may be off where there are too many places.
+/// A field, and how far a value may be off.
 pub(in crate::format) struct Painted {
     pub values: Vec<DVec3>,
     pub tolerance: f64,
+    /// True if it is recorded to the bit while there are not too many places.
+    pub is_exact: bool,
 }
 
 /// Chooses the vertices to record, so that the mesh itself gets its own sets back.
@@ -125,7 +127,7 @@ impl Sample<'_> {
         let mut is_off = vec![false; class.len()];
         for field in &self.meaning.fields {
             let allowed = multiple.map_or(0.0, |multiple| multiple * field.tolerance);
-            if allowed == f64::INFINITY {
+            if allowed == f64::INFINITY || (multiple.is_none() && !field.is_exact) {
                 continue;
             }
             let values: Vec<DVec3> = vertices.iter().map(|v| field.values[v.index()]).collect();
