@@ -19,6 +19,7 @@ impl Application {
 
     /// Takes the sequence that was found to fit.
     pub(in crate::window) fn take_mix(&mut self, chosen: Result<PathBuf, String>) {
+        self.session.has_checked_mix();
         let path = match chosen {
             Ok(path) => path,
             Err(sentence) => return self.fail(sentence),

@@ -63,6 +63,8 @@ pub struct Session {
     frames: FrameReads,
     /// The frames of the other sequence that leads its handles.
     mix: MixReads,
+    /// True while a chosen sequence is checked that is to lead them.
+    is_checking_mix: bool,
     /// The body of the open sequence.
     following: FrameSearch,
     /// The running change of the mesh.
@@ -133,8 +135,9 @@ impl Session {
     }
 
     /// Checks off the window's thread that the sequence that a person means by a file can lead handles of the open one.
-    pub fn check_mix(&self, file: &Path, frame: usize, workers: &Workers) {
+    pub fn check_mix(&mut self, file: &Path, frame: usize, workers: &Workers) {
         if let Some(sequence) = self.open.as_ref().and_then(|open| open.sequence.as_ref()) {
+            self.is_checking_mix = true;
             mixing::check(file, frame, sequence, workers);
         }
     }
@@ -147,6 +150,11 @@ impl Session {
         shape: Result<Arc<Vec<DVec3>>, String>,
     ) -> Option<Result<Arc<Vec<DVec3>>, String>> {
         self.frames.take(stamp, frame, shape)
+    }
+
+    /// Notes the end of that check.
+    pub fn has_checked_mix(&mut self) {
+        self.is_checking_mix = false;
     }
 
     /// Follows the body and some handles of the open sequence through all frames, off the window's thread.
@@ -328,7 +336,8 @@ impl Session {
         let stage = || self.save_watch.as_ref().and_then(Watch::now);
         let saving = self.saving.running();
         let saving = saving.map(|running| stage().unwrap_or(("saving", running.progress.get())));
-        loading.or(stitching).or(saving).or(self.following.doing())
+        let checking = self.is_checking_mix.then_some(("reading the other sequence", 0.0));
+        loading.or(stitching).or(saving).or(self.following.doing()).or(checking)
     }
 
     fn stamp(&mut self) -> Revision {
