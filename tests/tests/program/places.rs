@@ -34,9 +34,9 @@ fn an_exported_edit_bends_another_scan_and_reports_what_it_found() {
     let folder = Folder::new();
     let edit = exported(&folder.write_mesh("ball.off", &shapes::icosphere(4)));
     let (out, report) = (folder.at("out.off"), folder.at("report.json"));
-    for extension in ["obj", "ply", "stl"] {
-        let name = format!("other.{extension}");
-        let other = folder.write_mesh(&name, &shapes::uv_sphere(33, 50));
+    let fine = shapes::uv_sphere(33, 50);
+    for (name, drawn) in [("soup.off", shapes::soup(&fine)), ("fine.off", fine)] {
+        let other = folder.write_mesh(name, &drawn);
         let more = ["--report", report.to_str().unwrap()];
         folder.apply(&other, &edit, &out, &more).done();
         let report: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
@@ -64,8 +64,8 @@ fn a_scan_that_lies_elsewhere_is_refused_and_nothing_is_written() {
     let folder = Folder::new();
     let edit = exported(&folder.write_mesh("ball.off", &shapes::icosphere(4)));
     let beside = DAffine3::from_translation(DVec3::X * 3.0);
-    let other = folder.write_mesh("other.ply", &shapes::moved(&shapes::uv_sphere(33, 50), beside));
-    let out = folder.at("out.ply");
+    let other = folder.write_mesh("other.off", &shapes::moved(&shapes::uv_sphere(33, 50), beside));
+    let out = folder.at("out.off");
     let words = ["another mesh", "only 0% of `top`", "move, turn and scale"];
     folder.apply(&other, &edit, &out, &[]).refused(1, &words);
     assert!(!out.exists());
