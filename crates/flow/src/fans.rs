@@ -3,34 +3,29 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
 use crate::hinges::{Hinges, WALL, corner_at, last, next};
-use crate::plane::{rotation_between, small_rotation, turned, turned_back, unit};
+use crate::plane::{rotation_between, small_rotation, turned, turned_back};
 
 /// The corners around each vertex.
-///
-/// Angles and rotations are kept in single precision, which a step on a large surface reads faster: its time is half
-/// that of the memory. Each is the same wherever it is used, so what is carried out and back returns to where it was,
-/// and lengths are those of double precision ([`unit`]).
 #[derive(Clone, Debug)]
 pub(crate) struct Fans {
     /// The start of each vertex's corners, and the end of the last one's.
     offsets: Vec<u32>,
     /// The corners of each vertex, counterclockwise.
     corners: Vec<u32>,
-    /// The direction at which each of them begins, in the plane of its vertex. A way that is put beside its corner by
-    /// rounding crosses over at once.
-    starts: Vec<f32>,
+    /// The direction at which each of them begins, in the plane of its vertex.
+    starts: Vec<f64>,
     /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
     scales: Vec<f64>,
     /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
-    rotations: Vec<[Vec2; 3]>,
+    rotations: Vec<[DVec2; 3]>,
     /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
     /// defect that the corner takes.
-    twists: Vec<[f32; 3]>,
+    twists: Vec<[f64; 3]>,
 }
 
 /// Where a direction at a vertex leads.
@@ -51,7 +46,7 @@ impl Fans {
             corners: Vec::with_capacity(3 * charts.len()),
             starts: Vec::with_capacity(3 * charts.len()),
             scales: Vec::with_capacity(count),
-            rotations: vec![[Vec2::X; 3]; charts.len()],
+            rotations: vec![[DVec2::X; 3]; charts.len()],
             twists: vec![[0.0; 3]; charts.len()],
         };
         fans.offsets.push(0);
@@ -78,10 +73,10 @@ impl Fans {
             // The middles of both agree, so that neither side of the triangle is preferred.
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
-            self.rotations[corner as usize / 3][k] = rotation_between(middle, here).as_vec2();
-            self.twists[corner as usize / 3][k] = ((scale - 1.0) * angle) as f32;
+            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
+            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
             self.corners.push(corner);
-            self.starts.push((scale * start) as f32);
+            self.starts.push(scale * start);
             start += angle;
         }
         self.scales.push(scale);
@@ -96,7 +91,7 @@ impl Fans {
     /// The rotation from a corner's triangle to the tangent plane of its vertex.
     #[inline]
     pub fn rotation(&self, corner: u32) -> DVec2 {
-        unit(self.rotations[corner as usize / 3][corner as usize % 3])
+        self.rotations[corner as usize / 3][corner as usize % 3]
     }
 
     /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
@@ -107,7 +102,7 @@ impl Fans {
     pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
         let both = after + before;
         let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
-        let twist = f64::from(self.twists[corner as usize / 3][corner as usize % 3]);
+        let twist = self.twists[corner as usize / 3][corner as usize % 3];
         turned(small_rotation(share * twist), self.rotation(corner))
     }
 
@@ -116,8 +111,8 @@ impl Fans {
     #[inline]
     pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
         std::array::from_fn(|k| {
-            let middle = turned_back(unit(self.rotations[triangle][k]), vectors[k]);
-            let half = small_rotation(0.5 * f64::from(self.twists[triangle][k]));
+            let middle = turned_back(self.rotations[triangle][k], vectors[k]);
+            let half = small_rotation(0.5 * self.twists[triangle][k]);
             [turned(half, middle), turned_back(half, middle)]
         })
     }
@@ -125,7 +120,7 @@ impl Fans {
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
     #[inline]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
-        self.rotations[triangle].map(unit)
+        self.rotations[triangle]
     }
 
     /// The place among a vertex's corners of that into which the direction at an angle in its plane leads; 0 if it is
@@ -134,7 +129,7 @@ impl Fans {
     pub fn sector(&self, vertex: usize, angle: f64) -> usize {
         let starts = &self.starts[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize];
         // Counted without branches, which would be guessed wrong as often as not.
-        let begun: usize = starts.iter().map(|&start| usize::from(start <= angle as f32)).sum();
+        let begun: usize = starts.iter().map(|&start| usize::from(start <= angle)).sum();
         begun.saturating_sub(1)
     }
 
@@ -152,9 +147,9 @@ impl Fans {
         let corners = self.corners(vertex);
         let (&first, &end) = (corners.first()?, corners.last()?);
         let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
-        let (corner, start) = (corners[place], f64::from(starts[place]));
+        let (corner, start) = (corners[place], starts[place]);
         let next = match starts.get(place + 1) {
-            Some(&next) => f64::from(next),
+            Some(next) => *next,
             None if hinges.after(end) == WALL => {
                 let angle_there = charts[end as usize / 3].angle(end as usize % 3);
                 if angle - start > angle_there {
@@ -176,8 +171,7 @@ impl Fans {
     /// The way along the first or the last edge of an open fan, on which the direction's projection is larger.
     fn along_border(&self, vertex: usize, direction: DVec2, (first, end): (u32, u32), charts: &[Chart]) -> Option<Way> {
         let chart_of = |corner: u32| &charts[corner as usize / 3];
-        let total =
-            f64::from(self.starts[self.offsets[vertex + 1] as usize - 1]) + chart_of(end).angle(end as usize % 3);
+        let total = self.starts[self.offsets[vertex + 1] as usize - 1] + chart_of(end).angle(end as usize % 3);
         let (on_first, on_last) = (direction.x, direction.dot(DVec2::from_angle(total)));
         if on_first.max(on_last) <= 0.0 {
             return None;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 
 /// `vector` turned by `rotation`, which has the cosine and the sine of an angle.
 #[inline]
@@ -26,14 +26,6 @@ pub(crate) fn conjugate(rotation: DVec2) -> DVec2 {
 #[inline]
 pub(crate) fn rotation_between(from: DVec2, to: DVec2) -> DVec2 {
     turned_back(from, to).normalize()
-}
-
-/// A rotation that is kept in single precision, with the length 1 to the rounding of double precision: one step of
-/// Newton's method for the inverse root.
-#[inline]
-pub(crate) fn unit(rotation: Vec2) -> DVec2 {
-    let rotation = rotation.as_dvec2();
-    rotation * (1.5 - 0.5 * rotation.length_squared())
 }
 
 /// The rotation by an angle, which mostly is small.

@@ -38,8 +38,6 @@ pub(crate) struct Domain {
 #[derive(Clone, Copy, Default)]
 struct Walk {
     triangle: u32,
-    /// The edge through which the triangle was entered: rounding must not lead back through it.
-    entered: Option<usize>,
     weights: [f64; 3],
     /// The rest of the way.
     left: DVec2,
@@ -86,16 +84,12 @@ impl Domain {
         for (i, (sector, &angle)) in sectors.iter_mut().zip(&angles).enumerate().take(count) {
             *sector = self.fans.sector(first + i, angle);
         }
-        let mut walks = [Walk::default(); BLOCK];
+        let mut walks = [None; BLOCK];
         for (i, walk) in walks.iter_mut().enumerate().take(count) {
-            let begun = self.begin(first + i, (displacements[i], angles[i], sectors[i]));
-            *walk = begun.unwrap_or_default();
+            *walk = self.begin(first + i, (displacements[i], angles[i], sectors[i]));
         }
-        let walks = &mut walks[..count];
-        self.walk(walks);
-        for (i, (place, walk)) in places.iter_mut().zip(walks).enumerate() {
-            let is_bare = self.fans.corners(first + i).is_empty();
-            *place = (!is_bare).then(|| walk.end());
+        for (place, walk) in places.iter_mut().zip(walks).take(count) {
+            *place = walk.map(|walk| self.walk(walk));
         }
     }
 
@@ -117,7 +111,6 @@ impl Domain {
         let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
         Some(Walk {
             triangle: corner / 3,
-            entered: None,
             weights,
             left,
             rates,
@@ -125,39 +118,24 @@ impl Domain {
         })
     }
 
-    /// Walks at most [`BLOCK`] ways to their ends, all of them across a triangle before any goes on: how many one crosses
-    /// can't be guessed, and a wrong guess throws away what was begun of the next way.
-    fn walk(&self, walks: &mut [Walk]) {
-        let (mut going, mut count) = ([0; BLOCK], walks.len());
-        for (i, way) in going.iter_mut().enumerate() {
-            *way = i;
-        }
-        let mut left_by = [0; BLOCK];
+    /// Walks to the end.
+    fn walk(&self, mut walk: Walk) -> Place {
+        // The edge through which the triangle was entered: rounding must not lead back through it.
+        let mut entered = None;
         for _ in 0..MOST_EDGES {
-            let mut crossing = 0;
-            for round in 0..count {
-                let way = going[round];
-                let walk = &mut walks[way];
-                let (k, share) = exit(walk.weights, walk.rates, walk.entered);
-                walk.advance(share);
-                // Kept only if the next does not write over it.
-                (going[crossing], left_by[crossing]) = (way, k);
-                crossing += usize::from(share < 1.0);
-            }
-            count = crossing;
-            if count == 0 {
+            let Some((k, share)) = exit(walk.weights, walk.rates, entered) else {
+                walk.advance(1.0);
                 break;
-            }
-            for (&way, &k) in going.iter().zip(&left_by).take(count) {
-                let walk = &mut walks[way];
-                walk.weights[k] = 0.0;
-                let edge = 3 * walk.triangle + k as u32;
-                walk.entered = match self.hinges.beside(edge) {
-                    WALL => self.slide(walk, edge),
-                    other => Some(self.cross(walk, edge, other)),
-                };
-            }
+            };
+            walk.advance(share);
+            walk.weights[k] = 0.0;
+            let edge = 3 * walk.triangle + k as u32;
+            entered = match self.hinges.beside(edge) {
+                WALL => self.slide(&mut walk, edge),
+                other => Some(self.cross(&mut walk, edge, other)),
+            };
         }
+        walk.end()
     }
 
     /// Goes over from the triangle of `edge` to that of `other`; returns the edge's number there.
@@ -243,18 +221,20 @@ impl Domain {
 }
 
 /// The edge through which a point leaves a triangle before its barycentric coordinates have changed by `rates`, and the
-/// share of the way to it: 1 if it does not leave.
+/// share of the way to it.
 #[inline]
-fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> (usize, f64) {
-    // All three without a branch, which would be guessed wrong as often as not.
-    let share = |k: usize| match Some(k) != entered && weights[k] + rates[k] < 0.0 {
-        true => weights[k] / -rates[k],
-        false => 1.0,
-    };
-    let shares = [share(0), share(1), share(2)];
-    let first = usize::from(shares[1] < shares[0]);
-    let k = if shares[2] < shares[first] { 2 } else { first };
-    (k, shares[k])
+fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> Option<(usize, f64)> {
+    let mut found = None;
+    let mut least = 1.0;
+    for k in 0..3 {
+        if Some(k) != entered && weights[k] + rates[k] < 0.0 {
+            let share = weights[k] / -rates[k];
+            if share < least {
+                (found, least) = (Some(k), share);
+            }
+        }
+    }
+    found.map(|k| (k, least))
 }
 
 #[cfg(test)]
