@@ -3,13 +3,11 @@
 //! It uses Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew
 //! part and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
 //! positive semidefinite: every other critical point is a saddle or a minimum. So one or two steps from a warm start
-//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved again from
-//! the largest eigenvector of Horn's 4×4 matrix, which is always a proper rotation: from a quick one (see
-//! `quick_rotation`) if Newton's method confirms it, or else from that of Jacobi's method (see `rigid_fit`).
+//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved again by
+//! the largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::numerical::quick_rotation::quick_rotation;
 use crate::numerical::rigid_fit::best_rotation;
 
 /// The number of Newton steps before a start is given up.
@@ -42,9 +40,6 @@ pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
     let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if !(size > 0.0 && s.is_finite()) {
         return start;
-    }
-    if let Some(rotation) = quick_rotation(s).and_then(|rotation| newton(s, rotation)) {
-        return rotation;
     }
     let rotation = best_rotation(&s.transpose());
     // If the maximum is not unique, Newton's method cannot do better and is not tried again.

@@ -318,7 +318,7 @@ impl Project {
         Self { sequence: path, ..self }
     }
 
-    /// The same with the [`digest`] of the mesh's own vertex colours, over which its kept dye lies.
+    /// The same with the [digest](crate::digest) of the mesh's own vertex colours, over which its kept dye lies.
     #[must_use]
     pub fn over_colours(self, colours: String) -> Self {
         Self {
