@@ -38,7 +38,7 @@ pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
 /// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// Each triangle's velocity, and that which is carried, times its area.
+    /// Each triangle's own velocity and its carried one, times its area.
     fields: Vec<[DVec2; 2]>,
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,

@@ -52,6 +52,14 @@ fn document(session: &Session) -> &Document {
     session.harness.state().editor().document()
 }
 
+/// The drawn vertices of the shown shape.
+fn shown(session: &Session) -> Vec<DVec3> {
+    let view = session.harness.state().editor().view();
+    let mut shown = Vec::new();
+    view.model.unwrap().drawn_positions(view.displacements, &mut shown);
+    shown
+}
+
 fn command(session: &mut Session, command: Command) {
     session.harness.state_mut().command(command);
     session.settle();
@@ -153,9 +161,7 @@ fn frames_are_scrubbed_keyed_exported_and_kept_in_a_project() {
     assert!(is_same(11) && is_same(10) && !is_same(8) && !is_same(6));
     // The frame that was shown is the one that was written.
     let written = open_mesh(&own.join("ball-8.obj")).model.rest_positions();
-    let view = session.harness.state().editor().view();
-    let mut shown = Vec::new();
-    view.model.unwrap().drawn_positions(view.displacements, &mut shown);
+    let shown = shown(&session);
     let away = largest_distance(&written, &shown);
     assert!(away < 1e-9, "{away}");
     // The path of the body: all frames are followed by a job, and the command line's files are again the same.
@@ -245,10 +251,7 @@ fn another_sequence_leads_a_handle_live_in_the_export_and_in_a_project() {
     by_command(&walk, &edit, &theirs);
     assert!(bytes(&ours) == bytes(&theirs));
     let written = open_mesh(&ours.join("ball-6.obj")).model.rest_positions();
-    let view = session.harness.state().editor().view();
-    let mut shown = Vec::new();
-    view.model.unwrap().drawn_positions(view.displacements, &mut shown);
-    let away = largest_distance(&written, &shown);
+    let away = largest_distance(&written, &shown(&session));
     assert!(away < 1e-9, "{away}");
     // A project names the other sequence, relative to itself, and says so if it is gone.
     let project = folder.at("led.pliant");

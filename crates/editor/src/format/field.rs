@@ -1,5 +1,5 @@
-//! A number painted on the surface, in an edit: selections with a value each, or numbers of vertices, the later one having priority. A
-//! stiffness may be "rigid" instead of a number, which is infinity here: JSON has none.
+//! A number painted on the surface, in an edit: selections with a value each, or values of vertices by number, the later
+//! one having priority. A stiffness may be "rigid" instead of a number, which is infinity here: JSON has none.
 
 use std::ops::RangeInclusive;
 

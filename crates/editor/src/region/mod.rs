@@ -167,7 +167,7 @@ impl Region {
                     }
                     Reach::Found | Reach::Bounded(_) => {
                         let radius = handle_radius(surface, topology, members);
-                        // A handle may be as large as its limb: then its reach gives the scale at which limbs are told apart.
+                        // A handle may be as large as its limb. Its reach is then the scale that separates limbs.
                         let scale = radius.min(most / PART_RADII);
                         creases.within_limb(surface, topology, &seeds, [radius, scale], most, cancel)?
                     }

@@ -5,12 +5,12 @@
 use std::collections::BTreeMap;
 
 use glam::{DQuat, DVec3};
-use pliant_editor::{Beginning, Command, Event, FilterKind, HandleFilter, HandleId, HandlePlace, HandleTransform};
+use pliant_editor::{Beginning, Command, FilterKind, HandleFilter, HandleId, HandlePlace, HandleTransform};
 use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use crate::sequences::{COUNT, deliver, follow, frame, go_to, open};
+use crate::sequences::{COUNT, deliver, follow, frame, give_frames, go_to, open};
 
 const FILTER: HandleFilter = HandleFilter {
     span: [3, 36],
@@ -117,11 +117,7 @@ fn a_filter_is_a_step_and_waits_for_the_frames() {
         again.editor.document().animation().filters(),
         rig.editor.document().animation().filters()
     );
-    again.send(Event::OpenedSequence {
-        count: COUNT,
-        shown: None,
-    });
-    deliver(&mut again);
+    give_frames(&mut again);
     assert_ne!(again.editor.document().animation().frame(), 12);
     follow(&mut again);
     assert_eq!(again.editor.document().animation().frame(), 12);

@@ -3,14 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use glam::DVec3;
-use pliant_editor::{
-    Beginning, Command, Event, FilterKind, GroundAxis, HandleFilter, HandleFootprints, HandleId, middle_of,
-};
+use pliant_editor::{Beginning, Command, FilterKind, GroundAxis, HandleFilter, HandleFootprints, HandleId, middle_of};
 use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use crate::sequences::{COUNT, deliver, follow, frame, go_to, open, shape};
+use crate::sequences::{COUNT, deliver, follow, frame, give_frames, go_to, open, shape};
 
 /// All frames are one footprint.
 const ALL: HandleFootprints = HandleFootprints {
@@ -128,11 +126,7 @@ fn nothing_else_moves_a_held_handle_and_edits_and_projects_have_its_footprints()
     rig.drain();
     assert_eq!(*rig.editor.document().from_file(), shown);
     let mut again = reopened(&rig, &saved(&rig));
-    again.send(Event::OpenedSequence {
-        count: COUNT,
-        shown: None,
-    });
-    deliver(&mut again);
+    give_frames(&mut again);
     follow(&mut again);
     assert_eq!(again.editor.document().animation(), rig.editor.document().animation());
     assert!(away(&again, 5) < 1e-9);

@@ -11,7 +11,7 @@ use pliant_mesh::shapes;
 
 use crate::project::{reopened, saved};
 use crate::rig::Rig;
-use crate::sequences::{COUNT, deliver, frame, go_to, open};
+use crate::sequences::{COUNT, deliver, frame, give_frames, go_to, open};
 
 /// The displacements of a frame of the other sequence: a ball that turns about another axis on its way upwards.
 fn other(rig: &Rig, number: usize) -> Vec<DVec3> {
@@ -131,10 +131,7 @@ fn a_mix_is_a_step_nothing_else_moves_its_handles_and_edits_and_projects_have_it
     rig.drain();
     assert_eq!(*rig.editor.document().from_file(), shown);
     let mut again = reopened(&rig, &saved(&rig));
-    again.send(Event::OpenedSequence {
-        count: COUNT,
-        shown: None,
-    });
+    give_frames(&mut again);
     deliver_both(&mut again);
     assert_eq!(again.editor.document().animation(), rig.editor.document().animation());
     assert!(away(&again, 9) < 1e-9);

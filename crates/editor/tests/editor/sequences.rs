@@ -29,12 +29,17 @@ pub fn frame(rig: &Rig, frame: usize) -> Arc<Vec<DVec3>> {
 
 pub fn open(drawn: Drawn) -> Rig {
     let mut rig = Rig::open(drawn);
+    give_frames(&mut rig);
+    rig
+}
+
+/// Opens the sequence beside the document, and shows its frame.
+pub fn give_frames(rig: &mut Rig) {
     rig.send(Event::OpenedSequence {
         count: COUNT,
         shown: None,
     });
-    deliver(&mut rig);
-    rig
+    deliver(rig);
 }
 
 /// Reads the frames that are wanted, and runs all jobs.
@@ -321,11 +326,7 @@ fn applied(rig: &Rig, edit: &EditFile, number: usize) -> Result<Rig, EditError> 
     let at_rest = handle(&vec![DVec3::ZERO; file.len()]);
     let own = SequenceEdit::of(edit, &setup, &[at_rest], |number, _| handle(&frame(rig, number)))?;
     let mut again = opened(rig, own.into());
-    again.send(Event::OpenedSequence {
-        count: COUNT,
-        shown: None,
-    });
-    deliver(&mut again);
+    give_frames(&mut again);
     if again.editor.view().wants_following {
         follow(&mut again);
     }

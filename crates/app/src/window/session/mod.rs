@@ -178,7 +178,8 @@ impl Session {
         self.following.take(stamp, frames)
     }
 
-    /// Cancels the running work: a change of the mesh, a load, a search through all frames, or a save before it has changed anything on the disk.
+    /// Cancels the running work: a change of the mesh, a load, a search through all frames, or a save before it has
+    /// changed anything on the disk.
     pub fn stop(&mut self) {
         self.stop_stitching();
         self.following.stop();
