@@ -2,30 +2,43 @@
 
 use glam::{DMat3, DVec3};
 
-/// Diagonalises a symmetric matrix in place; the columns of the result are its unit eigenvectors.
+/// Entries beside the diagonal that are smaller than this are zero: squared, they are far below the rounding of entries
+/// of about 1.
+const NOTHING: f64 = 1e-30;
+
+/// Diagonalises a symmetric matrix in place, whose largest entry is about 1; the columns of the result are its unit
+/// eigenvectors.
 pub(crate) fn jacobi<const N: usize>(matrix: &mut [[f64; N]; N]) -> [[f64; N]; N] {
     let mut vectors: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     for _sweep in 0..16 {
+        let mut is_diagonal = true;
         for p in 0..N - 1 {
             for q in p + 1..N {
-                if matrix[p][q].abs() < 1e-300 {
+                let own = matrix[p][q];
+                if own.abs() < NOTHING {
                     continue;
                 }
-                let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = t.hypot(1.0).recip();
+                is_diagonal = false;
+                let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * own);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = (t * t + 1.0).sqrt().recip();
                 let s = t * c;
-                for row in matrix.iter_mut() {
-                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
-                }
-                for k in 0..N {
-                    let (a, b) = (matrix[p][k], matrix[q][k]);
-                    (matrix[p][k], matrix[q][k]) = (c * a - s * b, s * a + c * b);
+                matrix[p][p] -= t * own;
+                matrix[q][q] += t * own;
+                (matrix[p][q], matrix[q][p]) = (0.0, 0.0);
+                for k in (0..N).filter(|k| *k != p && *k != q) {
+                    let (a, b) = (matrix[k][p], matrix[k][q]);
+                    let (a, b) = (c * a - s * b, s * a + c * b);
+                    (matrix[k][p], matrix[k][q]) = (a, b);
+                    (matrix[p][k], matrix[q][k]) = (a, b);
                 }
                 for row in vectors.iter_mut() {
                     (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
                 }
             }
+        }
+        if is_diagonal {
+            break;
         }
     }
     vectors

@@ -4,12 +4,14 @@
 pub(crate) mod dense;
 pub(crate) mod eigen;
 pub(crate) mod graph;
+pub(crate) mod horn;
 pub(crate) mod lane_fits;
 pub(crate) mod lanes;
 pub(crate) mod lbfgs;
 pub(crate) mod line_search;
 pub(crate) mod nearest;
 pub(crate) mod prefetch;
+pub(crate) mod quick_rotation;
 pub(crate) mod rigid_fit;
 pub(crate) mod rotation;
 pub(crate) mod rows;

@@ -6,6 +6,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::numerical::eigen::jacobi;
+use crate::numerical::horn::horn;
 
 /// A rigid motion about a point: `p ↦ centre + rotation * (p − centre) + shift`.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -62,14 +63,7 @@ pub(crate) fn best_rotation(covariance: &DMat3) -> DQuat {
     if !(largest > 0.0 && largest.is_finite()) {
         return DQuat::IDENTITY;
     }
-    let s = |row: usize, column: usize| covariance.col(column)[row] / largest;
-    let (x, y, z) = (s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0));
-    let mut n = [
-        [s(0, 0) + s(1, 1) + s(2, 2), x, y, z],
-        [x, s(0, 0) - s(1, 1) - s(2, 2), s(0, 1) + s(1, 0), s(2, 0) + s(0, 2)],
-        [y, s(0, 1) + s(1, 0), s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1)],
-        [z, s(2, 0) + s(0, 2), s(1, 2) + s(2, 1), s(2, 2) - s(0, 0) - s(1, 1)],
-    ];
+    let mut n = horn(&(*covariance * largest.recip()));
     let vectors = jacobi(&mut n);
     let best = (0..4).fold(0, |best, k| if n[k][k] > n[best][best] { k } else { best });
     let q = DQuat::from_xyzw(vectors[1][best], vectors[2][best], vectors[3][best], vectors[0][best]);

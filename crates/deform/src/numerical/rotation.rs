@@ -3,11 +3,13 @@
 //! It uses Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew
 //! part and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
 //! positive semidefinite: every other critical point is a saddle or a minimum. So one or two steps from a warm start
-//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved again by
-//! the largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
+//! are enough, reflected and flat cells need no special case, and cells that the test of H refuses are solved again from
+//! the largest eigenvector of Horn's 4×4 matrix, which is always a proper rotation: from a quick one (see
+//! `quick_rotation`) if Newton's method confirms it, or else from that of Jacobi's method (see `rigid_fit`).
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::numerical::quick_rotation::quick_rotation;
 use crate::numerical::rigid_fit::best_rotation;
 
 /// The number of Newton steps before a start is given up.
@@ -21,6 +23,9 @@ pub(crate) const STATIONARY: f64 = 1e-14;
 /// exact.
 pub(crate) const SMALL_RAD: f64 = 3e-3;
 
+/// The same for a rotation that no later step corrects: its error is that of rounding.
+const EXACT_RAD: f64 = 1e-7;
+
 /// The addition to H, in units of its trace: a cell with edges on one line does not determine the turn about it, and
 /// keeps its present one.
 pub(crate) const OPEN: f64 = 1e-12;
@@ -28,26 +33,32 @@ pub(crate) const OPEN: f64 = 1e-12;
 /// The best rotation for `s`, from the guess `start`; `start` itself if `s` is zero or not finite.
 #[inline]
 pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
-    if let Some(rotation) = newton(s, start) {
-        return rotation;
-    }
-    fit_anew(s, start)
+    newton(s, start, SMALL_RAD).unwrap_or_else(|| fit_anew(s, start))
 }
 
-/// Like [`fit`], if Newton's method from `start` did not converge.
+/// Like [`fit`], up to rounding. A rotation that [`fit`] found from a near guess is wrong by the square of the distance.
+pub(crate) fn fit_exactly(s: &DMat3, start: DQuat) -> DQuat {
+    newton(s, start, EXACT_RAD).unwrap_or_else(|| fit_anew(s, start))
+}
+
+/// Like [`fit_exactly`], if Newton's method from `start` did not converge.
 #[cold]
 pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
     let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if !(size > 0.0 && s.is_finite()) {
         return start;
     }
+    if let Some(rotation) = quick_rotation(s).and_then(|rotation| newton(s, rotation, EXACT_RAD)) {
+        return rotation;
+    }
     let rotation = best_rotation(&s.transpose());
     // If the maximum is not unique, Newton's method cannot do better and is not tried again.
-    newton(s, rotation).unwrap_or(rotation)
+    newton(s, rotation, EXACT_RAD).unwrap_or(rotation)
 }
 
+/// Ends with the first step that turns by less than `last_rad`.
 #[inline]
-fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
+fn newton(s: &DMat3, start: DQuat, last_rad: f64) -> Option<DQuat> {
     let mut rotation = start;
     for _ in 0..STEPS {
         let r = DMat3::from_quat(rotation);
@@ -84,7 +95,7 @@ fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
         // The unit quaternion of exp(turn), to second order.
         let step = DQuat::from_xyzw(0.5 * turn.x, 0.5 * turn.y, 0.5 * turn.z, 1.0);
         rotation = (rotation * step).normalize();
-        if turn.length_squared() < SMALL_RAD * SMALL_RAD {
+        if turn.length_squared() < last_rad * last_rad {
             return Some(rotation);
         }
     }

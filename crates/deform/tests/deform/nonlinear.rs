@@ -182,7 +182,8 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
             let scene = scene(drawn, method).with_ends(false);
             let centre = scene.model.bounds().unwrap().centre();
             let bound = &mut scene.bind();
-            for angle in [0.0, 1.0, 3.0, -2.0] {
+            // The last one is a small step of a drag.
+            for angle in [0.0, 1.0, 3.0, -2.0, -1.998] {
                 let motion = turned(centre, angle, DVec3::new(2.0, -1.0, 0.5) * scene.diagonal());
                 let (displacements, energies) = settle(bound, &vec![motion; scene.handle_count]);
                 let expected: Vec<DVec3> = scene
@@ -192,12 +193,8 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
                     .collect();
                 let error = apart(&displacements, &expected) / scene.diagonal();
                 assert!(error < 1e-6, "{name} {method:?} {angle}: {error:e}");
-                // If a coarse level leads, a global step in single precision comes first.
-                let most = if matches!(method, Iterative::Led(_) | Iterative::LedShells) {
-                    20
-                } else {
-                    10
-                };
+                // If a coarse level leads ARAP, a global step in single precision comes first.
+                let most = if matches!(method, Iterative::Led(_)) { 20 } else { 10 };
                 assert!(energies.len() < most, "{name} {method:?} {angle}: {}", energies.len());
             }
         }

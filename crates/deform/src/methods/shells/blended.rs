@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::elements::Elements;
 use super::shape::Energy;
-use crate::numerical::rotation::fit;
+use crate::numerical::rotation::fit_exactly;
 use crate::numerical::rows::CHUNK;
 
 /// A rotation by less than this, in radians, has no axis.
@@ -69,7 +69,7 @@ pub(super) fn fitted(elements: &Elements, from: &[DVec3], to: &[DVec3]) -> Vec<D
         sums[b] += product;
     }
     let each = sums.par_iter().with_min_len(CHUNK);
-    each.map(|sum| fit(sum, DQuat::IDENTITY)).collect()
+    each.map(|sum| fit_exactly(sum, DQuat::IDENTITY)).collect()
 }
 
 /// Makes rotation vectors differ little between neighbours: breadth first in each part, from its vertex with the least

@@ -143,9 +143,8 @@ impl Coarse {
         self.followed.clone_from(&self.solver.energy.elements.rest);
     }
 
-    /// Restricts the fine shape for its present motions, whose gradient is known: every centre takes its fine position,
-    /// and the loads make the coarse gradient equal to the fine one.
-    pub fn restrict(&mut self, fine: &Shape, gradient: &Field) {
+    /// Takes over the fine shape for its present motions, without loads: every centre takes its fine position.
+    pub fn follow(&mut self, fine: &Shape) {
         let solver = &mut *self.solver;
         for (own, &place) in solver.current.displacements.iter_mut().zip(&self.fine_of) {
             if place != ABSENT {
@@ -154,6 +153,15 @@ impl Coarse {
         }
         solver.energy.springs.loads.clear();
         solver.energy.evaluate(&mut solver.current, &solver.energy.springs);
+        solver.has_converged = false;
+        solver.has_slopes = false;
+        self.followed = solver.positions();
+    }
+
+    /// Like [`Coarse::follow`], with loads that make the coarse gradient equal to the fine one.
+    pub fn restrict(&mut self, fine: &Shape, gradient: &Field) {
+        self.follow(fine);
+        let solver = &mut *self.solver;
         solver.energy.find_slopes(&solver.current, &mut solver.slopes);
         let (offsets, members) = (&self.offsets, &self.members);
         let own = solver.slopes.energy.iter().zip(offsets.windows(2));
@@ -170,9 +178,6 @@ impl Coarse {
             })
             .collect();
         solver.energy.evaluate(&mut solver.current, &solver.energy.springs);
-        solver.has_converged = false;
-        solver.has_slopes = false;
-        self.followed = solver.positions();
     }
 
     /// Starts for new motions and takes `steps` steps. Returns the origin of the start: if it is rest, the fine shape

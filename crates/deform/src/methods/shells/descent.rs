@@ -17,8 +17,8 @@ pub(super) const NOTHING: f64 = 1e-20;
 impl ShellsSolver {
     /// Takes one step towards the present motions; the shape must not have converged.
     pub(super) fn descend(&mut self) {
-        let is_nothing = self.energy.springs.loads.is_empty() && self.current.energy <= self.nothing();
-        if is_nothing || !self.current.energy.is_finite() {
+        let is_minimum = self.energy.springs.loads.is_empty() && self.is_unstrained();
+        if is_minimum || !self.current.energy.is_finite() {
             self.has_converged = true;
             return;
         }
@@ -69,6 +69,11 @@ impl ShellsSolver {
             nothing: self.nothing(),
             rounded: 0.0,
         }
+    }
+
+    /// Whether the energy is that of rounding.
+    pub(super) fn is_unstrained(&self) -> bool {
+        self.current.energy <= self.nothing()
     }
 
     fn nothing(&self) -> f64 {

@@ -157,6 +157,9 @@ impl ShellsSolver {
     fn start_led(&mut self, led: &mut Led, motions: &[Motion]) {
         if self.is_at_rest() {
             led.coarse.rest();
+        } else if self.is_unstrained() {
+            // Its gradient is rounding, and as a load it would move whatever hardly resists.
+            led.coarse.follow(&self.current);
         } else if self.has_slopes {
             led.coarse.restrict(&self.current, &self.slopes.energy);
         }
