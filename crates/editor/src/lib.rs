@@ -83,8 +83,8 @@ pub use cut::{CutCurve, CutPlane, CutSight, CutStroke, KeptSide};
 pub use document::{
     Access, Animation, BodyPath, Carries, Content, Crease, Document, Dye, FREE_BEND_DEG, FlowOptions, Fluid,
     HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleCurve, HandleFilter, HandleFootprints, HandleId, HandleLine,
-    HandleMix, HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, ObjectAction, Paint, PivotPlace,
-    Pose, Reach, SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
+    HandleMix, HandleSketch, HandleTransform, History, KeptShape, KeyFrame, KeyId, KeyRow, ObjectAction, Paint,
+    PivotPlace, Pose, Reach, SHARPEN_RANGE, SaveMark, SavedAs, SmallParts, Tips, Twin, object_name, sum_of_shapes,
 };
 pub use ease::Ease;
 pub use editor::Editor;

@@ -1,12 +1,12 @@
 //! Commands on the edit over time: keys, the shown moment, play.
 
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, ctrl, item, unless};
-use crate::document::{Animation, KeyId};
+use crate::document::{Animation, KeyFrame, KeyId};
 use crate::ease::Ease;
 use crate::view::Skins;
 use crate::workspace::{
-    copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
-    set_span, step_frames, stretch_keys,
+    copy_keys, delete_keys, go_to, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease, set_span, step_frames,
+    stretch_keys,
 };
 
 /// Shows or hides the timeline.
@@ -52,64 +52,6 @@ pub(super) const SET_SKINS: Entry<Skins> = Entry {
         )
     },
     action: Action::Do(|context, skins| context.view.look.skins = skins),
-};
-
-/// Sets a key of every handle.
-pub(super) const KEY_HERE: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Key here",
-        "Sets a key of every handle at the shown moment, at its present position.",
-        "animation keyframe insert record",
-        &[character('i')],
-    )],
-    scope: Scope::Document,
-    unavailable: |state, ()| {
-        let mut handles = state.workspace.document.handles().iter();
-        let has_handle = handles.any(|handle| !handle.is_pin);
-        outside_work_pose(state).or(unless(
-            has_handle,
-            "There is no handle to set a key of: paint a handle first.",
-        ))
-    },
-    action: Action::Do(|context, ()| key_here(context.workspace, |_| true)),
-};
-
-/// Sets a key of the selected handles.
-pub(super) const KEY_SELECTED: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Key selected handles",
-        "Sets a key of the selected handles alone, at the shown moment.",
-        "animation keyframe insert record",
-        &[alt('i')],
-    )],
-    scope: Scope::Document,
-    unavailable: |state, ()| {
-        outside_work_pose(state).or_else(|| {
-            let handle = state.selected();
-            let is_pin = handle.as_ref().is_ok_and(|handle| handle.is_pin);
-            let pin = "A pin does not move, so it has no keys: unpin it first.";
-            handle.err().or(unless(!is_pin, pin))
-        })
-    },
-    action: Action::Do(|context, ()| {
-        let selection = &context.workspace.selection;
-        let mut selected = selection.companions().to_vec();
-        selected.extend(selection.selected());
-        key_here(context.workspace, |id| selected.contains(&id));
-    }),
-};
-
-/// Sets a key from a pose, by its place in the list.
-pub(super) const KEY_POSE: Entry<usize> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, place| {
-        let poses = state.workspace.document.poses();
-        outside_work_pose(state).or(unless(*place < poses.len(), "This pose no longer exists."))
-    },
-    action: Action::Do(|context, place| key_pose(context.workspace, place)),
 };
 
 /// Shows a moment.
@@ -325,7 +267,8 @@ pub(super) const SET_SPAN: Entry<(KeyId, [usize; 2])> = Entry {
     unavailable: |state, (id, _)| {
         let animation = state.workspace.document.animation();
         let mut keys = animation.keys().iter();
-        let has_span = keys.any(|key| key.time == id.time() && key.span(id.handle).is_some());
+        let span = |key: &KeyFrame| key.span(id.row.handle()?);
+        let has_span = keys.any(|key| key.time == id.time() && span(key).is_some());
         outside_work_pose(state).or(unless(has_span, "This key no longer exists."))
     },
     action: Action::Do(|context, (id, ends)| set_span(context.workspace, id, ends)),
@@ -351,6 +294,6 @@ fn no_keys(state: &State<'_>) -> Option<Reason> {
 }
 
 /// The reason if no file is open, or its handles are in a temporary pose.
-fn outside_work_pose(state: &State<'_>) -> Option<Reason> {
+pub(super) fn outside_work_pose(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| state.in_work_pose())
 }

@@ -16,6 +16,7 @@ mod held_part;
 mod key_map;
 mod look;
 mod mesh;
+mod new_keys;
 mod object;
 mod paint;
 mod pose;

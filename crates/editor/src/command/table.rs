@@ -9,8 +9,8 @@ use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{
-    animation, controls, curves, document, examples, flow, handle, held_part, look, mesh, object, paint, pose, region,
-    transform, view, ways,
+    animation, controls, curves, document, examples, flow, handle, held_part, look, mesh, new_keys, object, paint,
+    pose, region, transform, view, ways,
 };
 use crate::cut::KeptSide;
 use crate::document::{
@@ -191,11 +191,15 @@ commands! {
     /// Lets another sequence lead handles, or none.
     SetMix(mix: Option<HandleMix>) = ways::SET_MIX;
     /// Sets a key of every handle at the shown moment.
-    KeyHere = animation::KEY_HERE;
+    KeyHere = new_keys::KEY_HERE;
     /// Sets a key of the selected handles at the shown moment.
-    KeySelected = animation::KEY_SELECTED;
+    KeySelected = new_keys::KEY_SELECTED;
+    /// Sets a key of the strength alone at the shown moment.
+    KeyStrength = new_keys::KEY_STRENGTH;
+    /// Sets a key of the weights of examples alone at the shown moment.
+    KeyWeights = new_keys::KEY_WEIGHTS;
     /// Sets a key at the shown moment from a pose, by its place in the list, and shows it.
-    KeyPose(place: usize) = animation::KEY_POSE;
+    KeyPose(place: usize) = new_keys::KEY_POSE;
     /// Shows a moment, in seconds.
     GoToTime(time: f64) = animation::GO_TO_TIME;
     /// Shows the moment so many frames later.

@@ -9,6 +9,7 @@ use super::handle_curve::HandleCurve;
 use super::handle_filter::HandleFilter;
 use super::handle_footprints::HandleFootprints;
 use super::handle_mix::HandleMix;
+use super::key_id::{KeyId, KeyRow};
 use super::pose::Placed;
 use crate::ease::Ease;
 
@@ -21,7 +22,7 @@ const NEAR: f64 = 1e-9;
 /// The keys of a document, and the moment that it shows.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Animation {
-    /// By time; each has a time of its own and names a handle.
+    /// By time; each has a time of its own and is not empty.
     pub(super) keys: Arc<Vec<KeyFrame>>,
     /// The shown moment, in seconds, at least 0.
     pub(super) time: f64,
@@ -53,29 +54,9 @@ pub struct KeyFrame {
     pub(crate) spans: BTreeMap<HandleId, [usize; 2]>,
     /// The weights of the method's examples, if they bend the surface.
     pub(crate) weights: Option<Vec<Option<f64>>>,
-}
-
-/// A key of one handle, by its time.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct KeyId {
-    /// The handle.
-    pub handle: HandleId,
-    /// The time's bits, which are in the order of the times, because none is negative.
-    time_bits: u64,
-}
-
-impl KeyId {
-    /// The key of a handle at a time in seconds, at least 0.
-    pub fn new(handle: HandleId, time: f64) -> Self {
-        // Without the sign of -0.
-        let time_bits = time.abs().to_bits();
-        Self { handle, time_bits }
-    }
-
-    /// Its time in seconds.
-    pub fn time(self) -> f64 {
-        f64::from_bits(self.time_bits)
-    }
+    /// The share of the edit that is made, from 0 to 1. If a key of the animation has one, all keys have the whole
+    /// positions; if none has, they have the shown ones.
+    pub(crate) strength: Option<f64>,
 }
 
 impl KeyFrame {
@@ -87,6 +68,27 @@ impl KeyFrame {
     /// Returns true if it names this handle.
     pub fn has(&self, handle: HandleId) -> bool {
         self.handles.contains_key(&handle)
+    }
+
+    /// The share of the edit that is made at its time, from 0 to 1, if it has one.
+    pub fn strength(&self) -> Option<f64> {
+        self.strength
+    }
+
+    /// The weights of the method's examples, if it has some.
+    pub fn weights(&self) -> Option<&[Option<f64>]> {
+        self.weights.as_deref()
+    }
+
+    /// The rows in which it stands.
+    pub fn rows(&self) -> impl Iterator<Item = KeyRow> {
+        let strength = self.strength.map(|_| KeyRow::Strength);
+        let weights = self.weights.as_ref().map(|_| KeyRow::Weights);
+        self.handles().map(KeyRow::Handle).chain(strength).chain(weights)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.rows().next().is_none()
     }
 }
 
@@ -166,14 +168,18 @@ impl Animation {
         (time.clamp(0.0, latest) * self.fps).round() / self.fps
     }
 
-    /// Every key of every handle.
+    /// Every key of every row.
     pub(crate) fn ids(&self) -> impl Iterator<Item = KeyId> {
         let of_key = |key: &KeyFrame| {
-            let time = key.time;
-            let handles: Vec<HandleId> = key.handles().collect();
-            handles.into_iter().map(move |handle| KeyId::new(handle, time))
+            let rows: Vec<KeyId> = key.rows().map(|row| KeyId::new(row, key.time)).collect();
+            rows
         };
         self.keys.iter().flat_map(of_key)
+    }
+
+    /// Returns true if a key has a share of the edit: the keys then have the whole positions.
+    pub fn has_strength(&self) -> bool {
+        self.keys.iter().any(|key| key.strength.is_some())
     }
 
     /// The same animation at another moment.
@@ -186,7 +192,7 @@ impl Animation {
 
     /// Adds a key. If there is one at its time, each handle that it names gets its position, and that one's ease stays.
     pub(crate) fn put(&mut self, key: KeyFrame) {
-        if key.handles.is_empty() {
+        if key.is_empty() {
             return;
         }
         let time = self.tidy(key.time);
@@ -198,12 +204,13 @@ impl Animation {
                 own.curves.extend(key.curves);
                 own.spans.extend(key.spans);
                 own.weights = key.weights.or(own.weights.take());
+                own.strength = key.strength.or(own.strength);
             }
             Err(place) => keys.insert(place, KeyFrame { time, ..key }),
         }
     }
 
-    /// Takes keys of single handles out.
+    /// Takes keys of single rows out.
     pub(crate) fn take(&mut self, ids: &BTreeSet<KeyId>) -> Vec<KeyFrame> {
         let mut taken = Vec::new();
         let keys = Arc::make_mut(&mut self.keys);
@@ -221,8 +228,9 @@ impl Animation {
                 .into_iter()
                 .partition(|(id, _)| is_taken(*id));
             key.spans = rest;
-            // Weights belong to no handle: they go with the last one.
-            let weights = key.weights.take_if(|_| key.handles.is_empty());
+            let is_row_taken = |row: KeyRow| ids.contains(&KeyId::new(row, key.time));
+            let weights = key.weights.take_if(|_| is_row_taken(KeyRow::Weights));
+            let strength = key.strength.take_if(|_| is_row_taken(KeyRow::Strength));
             taken.push(KeyFrame {
                 time: key.time,
                 ease: key.ease,
@@ -230,14 +238,15 @@ impl Animation {
                 curves,
                 spans,
                 weights,
+                strength,
             });
         }
-        keys.retain(|key| !key.handles.is_empty());
-        taken.retain(|key| !key.handles.is_empty());
+        keys.retain(|key| !key.is_empty());
+        taken.retain(|key| !key.is_empty());
         taken
     }
 
-    /// Moves keys of single handles to other times; those that come upon a key of their handle replace it. Returns them
+    /// Moves keys of single rows to other times; those that come upon a key of their row replace it. Returns them
     /// at their new times.
     pub(crate) fn retime(&mut self, ids: &BTreeSet<KeyId>, time: impl Fn(f64) -> f64) -> BTreeSet<KeyId> {
         let mut moved = self.take(ids);
@@ -249,7 +258,7 @@ impl Animation {
         self.put_all(moved)
     }
 
-    /// Adds keys, and returns the key of every handle in them.
+    /// Adds keys, and returns the key of every row in them.
     pub(crate) fn put_all(&mut self, keys: Vec<KeyFrame>) -> BTreeSet<KeyId> {
         let added = Self {
             frames: self.frames,
@@ -263,7 +272,7 @@ impl Animation {
     /// Gives the moments of keys another way to the next.
     pub(crate) fn set_ease(&mut self, ids: &BTreeSet<KeyId>, ease: Ease) {
         for key in Arc::make_mut(&mut self.keys) {
-            if key.handles.keys().any(|id| ids.contains(&KeyId::new(*id, key.time))) {
+            if key.rows().any(|row| ids.contains(&KeyId::new(row, key.time))) {
                 key.ease = ease;
             }
         }

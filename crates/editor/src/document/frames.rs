@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::animation::{Animation, KeyId};
+use super::animation::Animation;
 use super::body_path::BodyPath;
 use super::handle::HandleId;
 use super::handle_filter::HandleFilter;
 use super::handle_footprints::HandleFootprints;
 use super::handle_mix::HandleMix;
+use super::key_id::KeyId;
 use crate::ground_axis::GroundAxis;
 
 impl Animation {
@@ -149,8 +150,9 @@ impl Animation {
     /// Drops the keys of handles that nothing else moves: those with footprints, and those that another sequence leads.
     pub(crate) fn drop_useless_keys(&mut self) {
         let is_held = |id: &KeyId| {
-            let is_led = self.mix.as_ref().is_some_and(|mix| mix.leads(id.handle));
-            is_led || self.footprints.contains_key(&id.handle)
+            let Some(handle) = id.row.handle() else { return false };
+            let is_led = self.mix.as_ref().is_some_and(|mix| mix.leads(handle));
+            is_led || self.footprints.contains_key(&handle)
         };
         let held: BTreeSet<KeyId> = self.ids().filter(is_held).collect();
         self.take(&held);

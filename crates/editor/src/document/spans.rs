@@ -4,8 +4,9 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::animation::{Animation, KeyFrame, KeyId};
+use super::animation::{Animation, KeyFrame};
 use super::handle::HandleId;
+use super::key_id::KeyId;
 
 /// The frames on each side of a new key over which it spreads.
 const HALF: usize = 12;
@@ -44,17 +45,18 @@ impl Animation {
     /// Changes the span that holds a key. It goes on to hold all of its keys, and stops before other spans of the handle.
     pub(crate) fn set_span(&mut self, id: KeyId, to: [usize; 2]) {
         let frame = self.frame_at(id.time()).round() as usize;
-        let Some(from) = self.span_at(id.handle, frame) else {
+        let Some(handle) = id.row.handle() else { return };
+        let Some(from) = self.span_at(handle, frame) else {
             return;
         };
-        let frames = self.keys_in(id.handle, from).map(|(frame, _)| frame);
+        let frames = self.keys_in(handle, from).map(|(frame, _)| frame);
         let (first, last) = frames.fold((frame, frame), |(first, last), own| (first.min(own), last.max(own)));
-        let others = self.keys().iter().filter_map(|key| key.span(id.handle));
+        let others = self.keys().iter().filter_map(|key| key.span(handle));
         let others: Vec<[usize; 2]> = others.filter(|span| *span != from).collect();
         let [least, most] = self.room(first, last, &others);
         let to = [to[0].clamp(least, first), to[1].clamp(last, most)];
         for key in Arc::make_mut(&mut self.keys) {
-            if let Some(span) = key.spans.get_mut(&id.handle).filter(|span| **span == from) {
+            if let Some(span) = key.spans.get_mut(&handle).filter(|span| **span == from) {
                 *span = to;
             }
         }

@@ -14,7 +14,7 @@ use super::pivoted::{pivoted, without_pivot};
 use super::setup::Setup;
 use crate::HandleTransform;
 use crate::document::{Animation, Document, HandleId, KeyFrame, Placed, Stance, followed};
-use crate::timeline::{Posed, Timeline};
+use crate::timeline::Posed;
 
 /// The document's keys of handles, which are in the edit.
 pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
@@ -39,6 +39,7 @@ pub(super) fn entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry
             handles: named.collect(),
             curves: curves.collect(),
             weights: key.weights.clone().filter(|weights| Some(weights.len()) == count),
+            strength: key.strength,
             ..KeyEntry::default()
         }
     };
@@ -112,14 +113,15 @@ pub(super) fn placed(transform: HandleTransform, pivot: DVec3) -> Placed {
 /// Those of [`EditFile::timed_keys`].
 pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup) -> Result<(), EditError> {
     let id = |handle: usize| HandleId(handle as u16);
-    let timeline = match edit.keys.iter().any(|key| key.time.is_some()) {
-        true => edit.timeline(setup)?,
-        false => Timeline::default(),
-    };
-    let share_at = |time: f64| edit.part_before_keys() * timeline.strength_at(time);
-    let placed = |handle: usize, transform: &HandleTransform, time: f64| {
+    if edit.keys.iter().any(|key| key.time.is_some()) {
+        // Everything that makes no timeline is refused.
+        edit.timeline(setup)?;
+    }
+    // Keys of the strength are instead of the edit's own; without them that is made of every key.
+    let share = edit.part_before_keys();
+    let placed = |handle: usize, transform: &HandleTransform| {
         let pivot = transform.pivot_or(setup.handles[handle].pivot);
-        placed(transform.part(share_at(time), pivot), pivot)
+        placed(transform.part(share, pivot), pivot)
     };
     let keys = edit.timed_keys(setup)?.into_iter().map(|key| {
         let handles = key.handles.iter();
@@ -127,23 +129,21 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
             time: key.time,
             ease: key.ease,
             handles: handles
-                .map(|(handle, transform)| (id(*handle), placed(*handle, transform, key.time)))
+                .map(|(handle, transform)| (id(*handle), placed(*handle, transform)))
                 .collect(),
             curves: key
                 .curves
                 .iter()
-                .map(|(handle, curve)| (id(*handle), curve.part(share_at(key.time))))
+                .map(|(handle, curve)| (id(*handle), curve.part(share)))
                 .collect(),
             spans: BTreeMap::new(),
             weights: key.weights.map(<[_]>::to_vec).map(|mut weights| {
                 if setup.method.examples_bend() {
-                    weights
-                        .iter_mut()
-                        .flatten()
-                        .for_each(|weight| *weight *= share_at(key.time));
+                    weights.iter_mut().flatten().for_each(|weight| *weight *= share);
                 }
                 weights
             }),
+            strength: key.strength,
         }
     });
     let own = Animation::default();

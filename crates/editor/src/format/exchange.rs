@@ -54,9 +54,14 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         false => document.to_go_on_from(),
     };
     // An edit counts no full turns: values that depend on them are written as shown.
-    // Keys have no full values.
-    let in_full = Some(document.in_full()).filter(|document| !is_keyed && document.goes_the_short_way());
-    let strength = if in_full.is_some() { document.strength() } else { 1.0 };
+    // Keys have no full values, unless the strength has keys: they are then instead of the edit's own.
+    let has_strength = document.animation().has_strength();
+    let in_full = Some(document.in_full());
+    let in_full = in_full.filter(|document| has_strength || (!is_keyed && document.goes_the_short_way()));
+    let strength = match in_full.is_some() && !has_strength {
+        true => document.strength(),
+        false => 1.0,
+    };
     // Handles have their shown places then, and curves their full way.
     let curve_share = if in_full.is_some() { 1.0 } else { document.strength() };
     let document = in_full.as_ref().unwrap_or(document);
@@ -206,7 +211,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.attachments = Arc::new(setup.attachments.iter().cloned().collect());
     document.loose = setup.loose;
     let mut document = Document::from(document);
-    document.take_part(edit.strength);
+    document.take_part(edit.part_before_keys());
     if !edit.keys.is_empty() || edit.member_of_sequences().is_some() {
         document_keys::take_keys(&mut document, edit, &setup)?;
     }

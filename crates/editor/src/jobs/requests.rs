@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::comparison::Comparison;
 use super::flowed::{FlowRequest, flow_work};
+use super::frame_skins::{FrameSkin, FrameSkinSource, frame_skins_work};
 use super::inspected::Asked;
 use super::inspection::inspect_work;
 use super::scheduler::Jobs;
@@ -95,9 +96,39 @@ impl Jobs {
         }
     }
 
+    /// Returns true if the ghosts in these frames of a sequence, with all handles followed or not, are neither known nor
+    /// under way.
+    pub(crate) fn wants_frame_skins(&self, frames: &[(i8, usize)], knows_way: bool, document: &Document) -> bool {
+        let source = FrameSkinSource::of(frames.to_vec(), knows_way, document);
+        self.is_region_current() && self.frame_skin_source.as_ref() != Some(&source)
+    }
+
+    /// Requests the ghosts in these frames of a sequence. The last ones stay until the new ones are solved.
+    pub(crate) fn follow_frame_skins(
+        &mut self,
+        (frames, knows_way): (Vec<(i8, usize)>, bool),
+        skins: Vec<FrameSkin>,
+        document: &Document,
+    ) {
+        if let Some(work) = frame_skins_work(&self.computed, document, skins, self.allowance) {
+            self.frame_skin_source = Some(FrameSkinSource::of(frames, knows_way, document));
+            let revision = self.next_revision();
+            self.computed.slots.skins.renew(revision);
+            self.computed.slots.skins.request(work);
+        }
+    }
+
+    /// Stops the ghosts of a sequence that are under way; the last ones stay.
+    pub(crate) fn pause_skins(&mut self) {
+        if !self.computed.slots.skins.is_current() && self.frame_skin_source.take().is_some() {
+            self.stop_asking(|slots| &mut slots.skins);
+        }
+    }
+
     /// The shapes of other moments are no longer wanted.
     pub(crate) fn forget_skins(&mut self) {
-        if self.skin_source.take().is_some() {
+        let had_frames = self.frame_skin_source.take().is_some();
+        if self.skin_source.take().is_some() || had_frames {
             self.stop_asking(|slots| &mut slots.skins);
             self.computed.slots.skins.take();
         }

@@ -12,6 +12,7 @@ use pliant_mesh::{Cancel, Model};
 use super::allowance::Allowance;
 use super::comparison::Comparison;
 use super::computed::Computed;
+use super::frame_skins::FrameSkinSource;
 use super::inspected::Asked;
 use super::ordering::{order_work, serves};
 use super::skins::SkinSource;
@@ -54,6 +55,8 @@ pub(crate) struct Jobs {
     solves_anew: bool,
     /// The sources of the requested shapes of other moments.
     pub(super) skin_source: Option<SkinSource>,
+    /// The sources of the ghosts of a sequence.
+    pub(super) frame_skin_source: Option<FrameSkinSource>,
     /// The inspection job: its binding, and its targets if it depends on them, from its request on.
     pub(super) inspection: (Revision, Asked, Revision),
 }
@@ -92,6 +95,7 @@ impl Jobs {
             joint_up: 0,
             solves_anew: false,
             skin_source: None,
+            frame_skin_source: None,
             inspection: (Revision(0), Asked::default(), Revision(0)),
         }
     }
@@ -108,6 +112,7 @@ impl Jobs {
         self.joint_asked = None;
         self.joint_up = 0;
         self.skin_source = None;
+        self.frame_skin_source = None;
         let mut slots = std::mem::take(&mut self.computed.slots);
         slots.reset(self.next_revision());
         self.computed = Computed {

@@ -87,6 +87,19 @@ impl BindInput {
         })
     }
 
+    /// The same of the document in another frame of its sequence, in which the same vertices may move.
+    pub(super) fn of_document(&self, document: Document) -> Self {
+        Self {
+            model: Arc::clone(&self.model),
+            document,
+            region: self.region.clone(),
+            ordering: self.ordering.clone(),
+            reusable_factor: None,
+            revision: self.revision,
+            allowance: self.allowance,
+        }
+    }
+
     /// Factorises.
     pub(super) fn bind(&self, progress: &Progress, cancel: &Cancel) -> Result<PresentBinding, Unfinished> {
         let (model, region) = (&self.model, &self.region);

@@ -59,9 +59,26 @@ fn weights_at(keys: &[KeyFrame], count: usize, time: f64) -> Option<Vec<Option<f
     Some(values.numbers.iter().map(weight).collect())
 }
 
+/// The share of the edit at a time, if it has keys.
+fn strength_at(keys: &[KeyFrame], time: f64) -> Option<f64> {
+    let of_key = |key: &KeyFrame| {
+        Some(Values {
+            numbers: vec![key.strength?],
+            vectors: Vec::new(),
+        })
+    };
+    let track = numbers(keys, of_key);
+    let (values, _) = track.at(time)?;
+    values.numbers.first().copied()
+}
+
 /// The parts of a document that its keys move, where they have them at a moment; only those that are elsewhere now.
 #[derive(Default)]
 pub(crate) struct Posed {
+    /// The share of the edit, if it has keys: everything else is whole then.
+    strength: Option<f64>,
+    /// True if another share is shown now.
+    is_other_share: bool,
     transforms: Vec<(HandleId, HandleTransform)>,
     curves: Vec<(HandleId, HandleCurve)>,
     weights: Option<(&'static str, Attachment)>,
@@ -71,7 +88,14 @@ impl Posed {
     /// At a time in seconds.
     pub(crate) fn at(animation: &Animation, document: &Document, time: f64) -> Self {
         let keys = animation.keys();
-        let mut posed = Self::default();
+        let strength = strength_at(keys, time);
+        let mut posed = Self {
+            strength,
+            is_other_share: strength.is_some_and(|share| share != document.strength()),
+            ..Self::default()
+        };
+        let in_full = strength.map(|_| document.in_full());
+        let document = in_full.as_ref().unwrap_or(document);
         for handle in document.handles() {
             if let Some(transform) = track(keys, handle.id).and_then(|track| track.at(time)) {
                 let transform = transform.about(handle.pivot);
@@ -98,14 +122,17 @@ impl Posed {
 
     /// Returns true if everything is there.
     pub(crate) fn is_empty(&self) -> bool {
-        self.transforms.is_empty() && self.curves.is_empty() && self.weights.is_none()
+        !self.is_other_share && self.transforms.is_empty() && self.curves.is_empty() && self.weights.is_none()
     }
 
-    /// Puts everything there. Keys have shown values: if the document shows a share of an edit, that share becomes the
-    /// whole.
+    /// Puts everything there. Without keys of the strength the keys have shown values: if the document shows a share of an
+    /// edit, that share becomes the whole.
     pub(crate) fn put(self, document: &mut Document) {
         if self.is_empty() {
             return;
+        }
+        if self.strength.is_some() {
+            document.take_part(1.0);
         }
         let share = document.strength();
         document.change_handles(|handles| {
@@ -127,5 +154,13 @@ impl Posed {
             attachments.insert(name, examples);
             document.set_attachments(Arc::new(attachments));
         }
+        if let Some(share) = self.strength {
+            document.take_part(share);
+        }
+    }
+
+    /// Returns true if the strength has keys, and another share is shown.
+    pub(crate) fn is_other_share(&self) -> bool {
+        self.is_other_share
     }
 }

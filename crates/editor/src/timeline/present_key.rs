@@ -1,10 +1,25 @@
 //! The key of the shown moment, with everything as it is shown.
 
+use super::posed::Posed;
 use crate::document::{Document, Handle, HandleId, HandleLine, KeyFrame, Placed};
 
 /// The present transforms and curves of the handles that are wanted, pins apart, and the weights of examples that bend
-/// the surface. If the shown ones are a share of an edit, the key has the shown ones.
+/// the surface. If the shown ones are a share of an edit, the key has the shown ones; if the strength has keys, it has the
+/// whole ones. Another share than that of the keys is keyed, too, with all handles, because it moves all of them.
 pub(crate) fn present_key(document: &Document, is_wanted: impl Fn(HandleId) -> bool) -> KeyFrame {
+    let animation = document.animation();
+    if !animation.has_strength() {
+        return shown_key(document, is_wanted);
+    }
+    let is_other_share = Posed::at(animation, document, animation.time()).is_other_share();
+    KeyFrame {
+        strength: is_other_share.then(|| document.strength()),
+        ..shown_key(&document.in_full(), |id| is_other_share || is_wanted(id))
+    }
+}
+
+/// The key of the shown positions.
+fn shown_key(document: &Document, is_wanted: impl Fn(HandleId) -> bool) -> KeyFrame {
     let wanted = || {
         let handles = document.handles().iter();
         handles.filter(|handle| !handle.is_pin && is_wanted(handle.id))

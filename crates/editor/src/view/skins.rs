@@ -2,6 +2,9 @@
 
 use crate::document::Animation;
 
+/// The vertices of all ghosts together: about 600 MB of shapes and of buffers on the device.
+const MOST_VERTICES: usize = 4_000_000;
+
 /// The ghosts before and after the shown moment of an animation.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub struct Skins {
@@ -39,20 +42,38 @@ impl Skins {
     }
 
     /// The moments of the ghosts in seconds, each with its place: -1 is the nearest before the shown moment, 1 the
-    /// nearest after it. None lies outside the keys.
-    pub(crate) fn moments(&self, animation: &Animation) -> Vec<(i8, f64)> {
+    /// nearest after it. None lies outside the keys, and there are at most [`Skins::most_on`] the mesh.
+    pub(crate) fn moments(&self, animation: &Animation, vertices: usize) -> Vec<(i8, f64)> {
         if !self.shown {
             return Vec::new();
         }
-        let [before, after] = [self.before, self.after].map(|count| count.min(Self::MOST) as i8);
         let frame = animation.frame_at(animation.time());
         let spacing = f64::from(self.spacing);
-        let places = (-before..=after).filter(|place| *place != 0);
-        let moments = places.map(|place| (place, (frame + f64::from(place) * spacing) / animation.fps()));
         let range = 0.0..=animation.duration();
         // Rounding loses neither the first nor the last frame.
         let is_within =
             |time: f64| range.contains(&time) || range.contains(&(time - 1e-9)) || range.contains(&(time + 1e-9));
-        moments.filter(|(_, time)| is_within(*time)).collect()
+        let moments = self.places().into_iter();
+        let moments = moments.map(|place| (place, (frame + f64::from(place) * spacing) / animation.fps()));
+        let mut moments: Vec<(i8, f64)> = moments
+            .filter(|(_, time)| is_within(*time))
+            .take(Self::most_on(vertices))
+            .collect();
+        moments.sort_by_key(|(place, _)| *place);
+        moments
+    }
+
+    /// The places of all ghosts, the nearest ones first.
+    fn places(&self) -> Vec<i8> {
+        let [before, after] = [self.before, self.after].map(|count| count.min(Self::MOST) as i8);
+        let mut places: Vec<i8> = (-before..=after).filter(|place| *place != 0).collect();
+        places.sort_by_key(|place| (place.unsigned_abs(), *place));
+        places
+    }
+
+    /// The number of ghosts that a mesh of so many vertices may have, at least one: each has its own shape, and its own
+    /// buffers on the device, so their number bounds the memory.
+    pub fn most_on(vertices: usize) -> usize {
+        (MOST_VERTICES / vertices.max(1)).max(1)
     }
 }

@@ -57,9 +57,9 @@ impl FootprintWork {
         needed.find(|needed| !self.shapes.contains_key(needed))
     }
 
-    /// Notes the shapes in a frame if `wanted` needs them, and forgets those that it does not need.
-    pub(super) fn note(&mut self, frame: usize, wanted: usize, shapes: impl FnOnce() -> Shapes) {
-        let needed: Vec<usize> = self.needed_in(wanted).collect();
+    /// Notes the shapes in a frame if a `wanted` one needs them, and forgets those that none of these needs.
+    pub(super) fn note(&mut self, frame: usize, wanted: &[usize], shapes: impl FnOnce() -> Shapes) {
+        let needed: Vec<usize> = wanted.iter().flat_map(|wanted| self.needed_in(*wanted)).collect();
         self.shapes.retain(|frame, _| needed.contains(frame));
         if needed.contains(&frame) {
             self.shapes.entry(frame).or_insert_with(shapes);

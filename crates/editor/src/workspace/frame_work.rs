@@ -10,6 +10,7 @@ use super::filter_work::FilterWork;
 use super::footprint_work::FootprintWork;
 use super::handle_ways::HandleWays;
 use super::mix_work::MixWork;
+use super::skin_frames::SkinFrames;
 use crate::document::{HandleId, Version};
 use crate::timeline::HandlePlace;
 
@@ -36,6 +37,8 @@ pub(crate) struct FrameWork {
     pub(super) footprints: FootprintWork,
     /// The places to which another sequence leads handles.
     pub(super) mix: MixWork,
+    /// The frames around the shown one, for the ghosts.
+    pub(super) skins: SkinFrames,
     /// True if not all frames could be read.
     pub(super) has_failed: bool,
 }

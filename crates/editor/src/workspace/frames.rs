@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::frame_work::FrameWork;
 use super::state::Workspace;
-use crate::document::{Aspect, Document, FramePlace, Handle, HandleId, HandleTransform, SavedAs};
+use crate::document::{Animation, Aspect, Document, FramePlace, Handle, HandleId, HandleTransform, SavedAs};
 use crate::timeline::{HandlePlace, frames_that_reach, places_of_handles, transform_at};
 
 /// The name of the step to another frame. Steps that follow each other become one.
@@ -42,6 +42,11 @@ impl Workspace {
 
     /// The frame that must be read next; `None` if there is none.
     pub(crate) fn frame_to_read(&self) -> Option<usize> {
+        self.frame_to_show().or(self.frames.skins.asked())
+    }
+
+    /// The frame that must be read before the wanted one is shown.
+    fn frame_to_show(&self) -> Option<usize> {
         let wanted = self.frames.wanted?;
         let is_read = self.frames.read.as_ref().is_some_and(|(frame, _)| *frame == wanted);
         match is_read {
@@ -51,7 +56,7 @@ impl Workspace {
     }
 
     /// A frame with a key or a footprint that reaches this one, in which the handles are not known.
-    fn unknown_frame(&self, frame: usize) -> Option<usize> {
+    pub(super) fn unknown_frame(&self, frame: usize) -> Option<usize> {
         let document = &self.document;
         let is_known = |needed: &usize| {
             let is_current = self.frames.places_of == Some(document.versions().of(Aspect::Paint));
@@ -75,20 +80,23 @@ impl Workspace {
             self.frames.places.insert(frame, places);
         }
         let wanted = self.frames.wanted.unwrap_or(self.document.animation().frame());
+        let wanted: Vec<usize> = self.frames.skins.frames().chain([wanted]).collect();
         let mut footprints = std::mem::take(&mut self.frames.footprints);
-        footprints.note(frame, wanted, || self.held_shapes(shape));
+        footprints.note(frame, &wanted, || self.held_shapes(shape));
         self.frames.footprints = footprints;
     }
 
     /// Takes a frame that was read, or the reason why it was not.
     pub(crate) fn take_frame(&mut self, frame: usize, shape: Result<Arc<Vec<DVec3>>, String>) {
-        let is_awaited = self.frame_to_read() == Some(frame);
+        let is_awaited = self.frame_to_show() == Some(frame);
         match shape {
             Ok(shape) if shape.len() == self.document.rest().len() => {
                 self.note_handles(frame, &shape);
                 // A frame that was read for its handles' places is not shown.
                 if self.frames.wanted == Some(frame) {
                     self.frames.read = Some((frame, shape));
+                } else if self.frames.skins.asked() == Some(frame) {
+                    self.take_skin_frame(frame, shape);
                 }
             }
             Ok(_) => {}
@@ -97,7 +105,7 @@ impl Workspace {
                 self.pause_keys();
                 self.refuse(sentence);
             }
-            Err(_) => {}
+            Err(_) => self.frames.skins.fail(frame),
         }
     }
 
@@ -105,7 +113,7 @@ impl Workspace {
     pub(crate) fn show_wanted_frame(&mut self) {
         let Some(wanted) = self.frames.wanted else { return };
         self.follow_filters();
-        if self.frame_to_read().is_some() || self.awaits_handles() || self.awaits_mix(wanted) {
+        if self.frame_to_show().is_some() || self.awaits_handles() || self.awaits_mix(wanted) {
             return;
         }
         let Some((_, shape)) = self.frames.read.take_if(|(frame, _)| *frame == wanted) else {
@@ -162,9 +170,21 @@ impl Workspace {
     }
 
     /// Each handle's pivot and transform in a frame with this shape; at rest without a frame.
-    fn frame_places(&self, frame: Option<usize>, shape: &[DVec3]) -> BTreeMap<HandleId, FramePlace> {
+    pub(super) fn frame_places(&self, frame: Option<usize>, shape: &[DVec3]) -> BTreeMap<HandleId, FramePlace> {
+        let places = (&self.places_in(self.document.rest()), &self.places_in(shape));
+        self.places_by(self.document.animation(), frame, shape, places)
+    }
+
+    /// The same by an animation, if the handles are at these places in the shown frame and in this one.
+    pub(super) fn places_by(
+        &self,
+        animation: &Animation,
+        frame: Option<usize>,
+        shape: &[DVec3],
+        (before, now): (&BTreeMap<HandleId, HandlePlace>, &BTreeMap<HandleId, HandlePlace>),
+    ) -> BTreeMap<HandleId, FramePlace> {
         let document = &self.document;
-        let (before, now) = (self.places_in(document.rest()), self.places_in(shape));
+        let shown = animation.frame();
         let held_in = frame.filter(|frame| self.frames.footprints.hold_in(*frame));
         let held_in = held_in.map(|frame| (frame, self.held_shapes(shape)));
         let place = |handle: &Handle| {
@@ -176,15 +196,16 @@ impl Workspace {
             let transform = frame.map_or(HandleTransform::IDENTITY, |frame| {
                 let place_at = |key: usize| match key == frame {
                     true => Some(*own),
+                    false if key == shown => before.get(&handle.id).copied(),
                     false => self.frames.places.get(&key)?.get(&handle.id).copied(),
                 };
-                let mix = document.animation().mix();
+                let mix = animation.mix();
                 let paint = document.versions().of(Aspect::Paint);
                 let led = mix.and_then(|mix| Some((self.frames.mix.place(handle.id, frame, (paint, mix))?, mix)));
                 if let Some((led, mix)) = led {
                     return own.transform_to(led, mix.share, pivot);
                 }
-                let transform = transform_at(document.animation(), handle, (frame, own, pivot), place_at);
+                let transform = transform_at(animation, handle, (frame, own, pivot), place_at);
                 match self.frames.filters.shift(handle.id, frame) {
                     DVec3::ZERO => transform,
                     shift => transform.moved_by(shift),
@@ -200,7 +221,7 @@ impl Workspace {
     }
 
     /// The place of each handle where the surface is so far from the file's.
-    fn places_in(&self, way: &[DVec3]) -> BTreeMap<HandleId, HandlePlace> {
+    pub(super) fn places_in(&self, way: &[DVec3]) -> BTreeMap<HandleId, HandlePlace> {
         let file = self.model().map_or(&[][..], |model| &model.surface.positions);
         places_of_handles(self.document.paint(), file, way)
     }

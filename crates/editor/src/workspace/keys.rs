@@ -12,15 +12,39 @@ use super::key_work::Play;
 use super::state::Workspace;
 use crate::document::{Animation, Aspect, Document, HandleId, KeyFrame, KeyId, Placed};
 use crate::ease::Ease;
-use crate::jobs::{Activity, JobKind};
+use crate::jobs::JobKind;
 use crate::timeline::{Posed, present_key};
-use crate::view::Look;
 
 /// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
 pub(crate) fn key_here(workspace: &mut Workspace, is_wanted: impl Fn(HandleId) -> bool) {
     let mut key = present_key(&workspace.document, is_wanted);
     workspace.without_filters(&mut key);
     workspace.edit_keys("Key here", |animation| Some(animation.put_all(vec![key])));
+}
+
+/// Sets a key of the strength alone at the shown moment: the share of the edit that is shown. Selects it. The first such
+/// key makes the keys of handles whole: they have the shown positions, of which this share is made.
+pub(crate) fn key_strength(workspace: &mut Workspace) {
+    let document = &workspace.document;
+    let key = KeyFrame {
+        time: document.animation().time(),
+        strength: Some(document.strength()),
+        ..KeyFrame::default()
+    };
+    workspace.edit_keys("Key strength", |animation| Some(animation.put_all(vec![key])));
+}
+
+/// Sets a key of the weights of examples alone at the shown moment. Selects it.
+pub(crate) fn key_weights(workspace: &mut Workspace) {
+    let animation = workspace.document.animation();
+    let in_full = animation.has_strength().then(|| workspace.document.in_full());
+    let document = in_full.as_ref().unwrap_or(&workspace.document);
+    let key = KeyFrame {
+        time: animation.time(),
+        weights: document.examples().map(|examples| examples.weights.clone()),
+        ..KeyFrame::default()
+    };
+    workspace.edit_keys("Key weights", |animation| Some(animation.put_all(vec![key])));
 }
 
 /// Sets a key at the shown moment from a kept pose, and shows it.
@@ -237,26 +261,6 @@ impl Workspace {
 
     fn first_selected(&self) -> Option<f64> {
         self.keys.selected.iter().map(|id| id.time()).reduce(f64::min)
-    }
-}
-
-/// The ghosts of other moments.
-impl Workspace {
-    /// Requests the ghosts that the look shows. None is shown while the animation plays, and those of an iterative method
-    /// follow once the shape rests.
-    pub(crate) fn follow_skins(&mut self, look: &Look, activity: Activity) {
-        let animation = self.document.animation();
-        let has_keys = animation.duration() > 0.0 && animation.frames().is_none();
-        if !(look.timeline && look.skins.shown && has_keys) || self.keys.is_playing() {
-            return self.jobs.forget_skins();
-        }
-        let is_live = self.document.method().solve() == Solve::Direct;
-        let is_at_rest = activity == Activity::Still && self.document.is_settled();
-        let is_other_problem = self.document.versions().are_other_problem(&self.seen);
-        if (is_live || is_at_rest) && activity != Activity::Painting && !is_other_problem {
-            let moments = look.skins.moments(self.document.animation());
-            self.jobs.follow_skins(moments, &self.document);
-        }
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn set_mix(workspace: &mut Workspace, mix: Option<HandleMix>) {
 impl Workspace {
     /// The other sequence and the frame of it that must be read next; `None` if there is none.
     pub(crate) fn mix_to_read(&self) -> Option<(&str, usize)> {
-        let frame = self.frames.wanted?;
+        let frame = self.frames.wanted.or(self.frames.skins.asked_of_mix())?;
         let mix = self.document.animation().mix()?;
         self.awaits_mix(frame).then_some((&*mix.sequence, frame))
     }

@@ -37,6 +37,8 @@ mod poses;
 mod regions;
 mod selection;
 mod shown_controls;
+mod skin_frames;
+mod skins;
 mod snapshot;
 mod state;
 mod stiffness;
@@ -65,8 +67,8 @@ pub(crate) use handles::{
     reset_region, set_pivot, set_pivot_place, split_selected, untwin,
 };
 pub(crate) use keys::{
-    copy_keys, delete_keys, go_to, key_here, key_pose, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease,
-    set_span, step_frames, stretch_keys,
+    copy_keys, delete_keys, go_to, key_here, key_pose, key_strength, key_weights, move_keys, neighbour_key, paste_keys,
+    set_fps, set_key_ease, set_span, step_frames, stretch_keys,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

@@ -14,7 +14,7 @@ use pliant_editor::{
 };
 use pliant_mesh::{Cancel, Progress, shapes};
 
-fn trs(translation: DVec3, turn_rad: f64) -> HandleTransform {
+pub fn trs(translation: DVec3, turn_rad: f64) -> HandleTransform {
     HandleTransform::Trs {
         translation,
         rotation: DQuat::from_rotation_z(turn_rad),
@@ -23,33 +23,33 @@ fn trs(translation: DVec3, turn_rad: f64) -> HandleTransform {
     }
 }
 
-fn put(rig: &mut Rig, id: HandleId, transform: HandleTransform) {
+pub fn put(rig: &mut Rig, id: HandleId, transform: HandleTransform) {
     rig.command(Command::SetHandleTransform(id, transform));
     rig.drain();
 }
 
-fn go_to(rig: &mut Rig, time: f64) {
+pub fn go_to(rig: &mut Rig, time: f64) {
     rig.command(Command::GoToTime(time));
     rig.drain();
 }
 
-fn affines(rig: &Rig) -> Vec<DAffine3> {
+pub fn affines(rig: &Rig) -> Vec<DAffine3> {
     let handles = rig.editor.document().handles().iter();
     handles.map(|handle| handle.affine()).collect()
 }
 
-fn shape(rig: &Rig) -> Vec<DVec3> {
+pub fn shape(rig: &Rig) -> Vec<DVec3> {
     rig.editor.document().from_file().to_vec()
 }
 
 /// The largest distance of two shapes.
-fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
+pub fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
 }
 
 /// The times of the keys.
-fn times(rig: &Rig) -> Vec<f64> {
+pub fn times(rig: &Rig) -> Vec<f64> {
     rig.editor
         .document()
         .animation()
@@ -65,7 +65,7 @@ fn ids(handle: HandleId, times: &[f64]) -> Vec<KeyId> {
 }
 
 /// A ball with two handles and keys at 0, 0.5 and 1 s, which shows the last of them, and the transforms at the keys.
-fn keyed(method: &str) -> (Rig, [HandleId; 2], [[HandleTransform; 2]; 3]) {
+pub fn keyed(method: &str) -> (Rig, [HandleId; 2], [[HandleTransform; 2]; 3]) {
     let mut rig = Rig::open(shapes::icosphere(3));
     rig.choose(method);
     rig.paint_handle();
@@ -158,7 +158,7 @@ fn a_frame_does_not_depend_on_where_playing_began() {
 }
 
 /// The frame at a time as the engine solves it: the written edit, bound afresh.
-fn engine_frame(rig: &Rig, edit: &EditFile, time: f64) -> Vec<DVec3> {
+pub fn engine_frame(rig: &Rig, edit: &EditFile, time: f64) -> Vec<DVec3> {
     let setup = edit.resolve(&rig.model).unwrap();
     let timeline = edit.timeline(&setup).unwrap();
     let (problem, cancel) = (setup.problem(&rig.model), Cancel::new());

@@ -160,7 +160,7 @@ fn deliver_one(rig: &mut Rig) {
 }
 
 /// A ball with a handle that is lifted at frame 10 and less at frame 20, which is shown.
-fn keyed() -> (Rig, HandleId) {
+pub fn keyed() -> (Rig, HandleId) {
     let mut rig = open(shapes::icosphere(2));
     rig.choose("bilaplacian");
     rig.paint_handle();
@@ -176,7 +176,7 @@ fn keyed() -> (Rig, HandleId) {
     (rig, id)
 }
 
-fn lifted(lift: f64) -> HandleTransform {
+pub fn lifted(lift: f64) -> HandleTransform {
     HandleTransform::Trs {
         translation: DVec3::Y * lift,
         rotation: DQuat::from_rotation_z(lift),

@@ -3,6 +3,8 @@
 use eframe::egui;
 use pliant_editor::{Command, Editor};
 
+use crate::window::widgets::command_button::icon_choice;
+use crate::window::widgets::icon::Glyph;
 use crate::window::widgets::number_field::{number_field, slid};
 use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::row_label::row_label;
@@ -25,5 +27,10 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             )
             .on_disabled_hover_text(obstacle.as_deref().unwrap_or_default());
         commands.adjust(&slider, || Command::SetStrength(percent / 100.0));
+        if editor.view().look.timeline
+            && icon_choice(ui, editor, &Command::KeyStrength, false, Glyph::DiamondPlus, None)
+        {
+            commands.push(Command::KeyStrength);
+        }
     });
 }

@@ -22,7 +22,14 @@ const FADE: f32 = 0.7;
 pub struct SkinViews {
     /// The surroundings under all of them, while there are some.
     stage: Option<Viewport>,
-    ghosts: Vec<SideView>,
+    ghosts: Vec<Ghost>,
+}
+
+/// The picture of another moment.
+struct Ghost {
+    view: SideView,
+    /// The place of the moment that it shows, which stays until another one is ready; `None` before the first.
+    place: Option<i8>,
 }
 
 impl SkinViews {
@@ -33,7 +40,7 @@ impl SkinViews {
                 .ghosts
                 .iter()
                 .zip(skins)
-                .all(|(view, skin)| view.shows(&skin.from_file))
+                .all(|(ghost, skin)| ghost.view.shows(&skin.from_file))
     }
 
     /// Takes over the first view's state and the editor's moments, and the results of other threads.
@@ -44,19 +51,28 @@ impl SkinViews {
             self.stage = None;
         }
         while self.ghosts.len() < skins.len() {
-            self.ghosts.push(SideView::beside(context, first));
+            self.ghosts.push(Ghost {
+                view: SideView::beside(context, first),
+                place: None,
+            });
         }
         // Ghosts need no colours of numbers on the surface.
         let source = PoseSource {
             field: None,
             ..source.clone()
         };
-        for (view, skin) in self.ghosts.iter_mut().zip(skins) {
+        for (ghost, skin) in self.ghosts.iter_mut().zip(skins) {
+            let view = &mut ghost.view;
             view.workers.set_pose_source(source.clone());
             while let Some(message) = view.receive() {
                 view.take(message, &skin.from_file, &source);
             }
             view.follow(&skin.from_file, first, &source);
+            if view.shows(&skin.from_file) {
+                ghost.place = Some(skin.place);
+            } else if !view.viewport.shows(&source.drawing) {
+                ghost.place = None;
+            }
         }
     }
 
@@ -92,16 +108,18 @@ impl SkinViews {
         let stage = self.stage.get_or_insert_with(|| first.beside());
         stage.set_surroundings_of(first);
         stage.paint(ui, rect, &view, editor, smooth)?;
-        let mut order: Vec<(&Skin, &mut SideView)> = shown.skins.iter().zip(&mut self.ghosts).collect();
-        order.sort_by_key(|(skin, _)| std::cmp::Reverse(skin.place.unsigned_abs()));
+        if !self.are_settled(shown.skins) {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(10));
+        }
+        let ready = self.ghosts.iter_mut();
+        let mut ready: Vec<(i8, &mut SideView)> = ready
+            .filter_map(|ghost| Some((ghost.place?, &mut ghost.view)))
+            .collect();
+        ready.sort_by_key(|(place, _)| std::cmp::Reverse(place.unsigned_abs()));
         let mut is_worth_more = false;
-        for (skin, side) in order {
-            if !side.shows(&skin.from_file) {
-                ui.ctx().request_repaint_after(std::time::Duration::from_millis(10));
-                continue;
-            }
-            side.viewport.set_opacity(opacity(skin.place));
-            side.viewport.set_tint(colour(shown.look.skins, skin.place));
+        for (place, side) in ready {
+            side.viewport.set_opacity(opacity(place));
+            side.viewport.set_tint(colour(shown.look.skins, place));
             let painted = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
                 ui.set_clip_rect(rect);
                 side.viewport.paint(ui, rect, &view, editor, smooth)

@@ -12,6 +12,7 @@ use crate::format::filters::{FilterEntry, check_filters};
 use crate::format::footprints::{FootprintEntry, check_footprints};
 use crate::format::mix::MixEntry;
 use crate::format::path::PathEntry;
+use crate::format::strength::strength_kind;
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -55,6 +56,9 @@ struct StoredKey {
     /// The weights of the examples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<Option<f64>>>,
+    /// The share of the edit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    strength: Option<f64>,
 }
 
 impl StoredAnimation {
@@ -74,6 +78,7 @@ impl StoredAnimation {
                 .collect(),
             spans: key.spans.iter().map(|(id, span)| (u32::from(id.0), *span)).collect(),
             weights: key.weights.clone(),
+            strength: key.strength,
         };
         Some(Self {
             fps: animation.fps(),
@@ -120,6 +125,12 @@ impl StoredAnimation {
                 return refuse(place, time, format!("seconds from 0 to {}", Animation::LATEST));
             }
         }
+        for (place, key) in self.keys.iter().enumerate() {
+            if let Some(strength) = key.strength {
+                let checked = strength_kind().check(strength);
+                checked.map_err(|error| error.under(&format!("animation.keys[{place}].strength")))?;
+            }
+        }
         let key = |key: &StoredKey| KeyFrame {
             time: key.time,
             ease: key.ease,
@@ -135,6 +146,7 @@ impl StoredAnimation {
                 .filter_map(|(id, span)| Some((HandleId(u16::try_from(*id).ok()?), *span)))
                 .collect(),
             weights: key.weights.clone(),
+            strength: key.strength,
         };
         if let Some(path) = &self.path {
             path.check_of_document().map_err(|error| error.under("animation"))?;

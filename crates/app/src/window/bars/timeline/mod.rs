@@ -1,6 +1,7 @@
 //! The timeline under the view: play and the shown moment, a ruler, and the keys of the handles in rows.
 
 mod path_row;
+mod row;
 mod rows;
 mod ruler;
 mod scale;

@@ -1,11 +1,13 @@
-//! The rows of keys: one of all handles, and one of each.
+//! The rows of keys: one of all, one of each handle, and those of the strength and of the weights of examples if they have
+//! keys.
 
 use std::collections::BTreeSet;
 
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, vec2};
-use pliant_editor::{Command, Ease, Editor, Handle, KeyFrame, KeyId};
+use pliant_editor::{Command, Ease, Editor, KeyFrame, KeyId};
 
 use super::path_row;
+use super::row::{Row, rows_of};
 use super::scale::TimeScale;
 use super::spans;
 use crate::window::widgets::command_button::command_button;
@@ -20,9 +22,9 @@ const MARK: f32 = 5.0;
 
 /// Shows the rows; names are at the left of the scale.
 pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mut Outbox) {
-    let handles: Vec<&Handle> = editor.view().handles.iter().filter(|handle| !handle.is_pin).collect();
+    let own = rows_of(editor);
     let has_path = path_row::is_shown(editor);
-    let rows = 1 + handles.len() + usize::from(has_path);
+    let rows = own.len() + usize::from(has_path);
     let size = vec2(ui.available_width(), HEIGHT * rows as f32);
     let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
     let canvas = whole.with_min_x(scale.x.min);
@@ -42,25 +44,18 @@ pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mu
         stripe(ui, rect.with_min_x(scale.x.min), rows - 1);
         path_row::show(ui, rect, scale, editor, commands);
     }
-    for (row, handle) in std::iter::once(None).chain(handles.into_iter().map(Some)).enumerate() {
-        let rect = rect_of(row);
-        stripe(ui, rect.with_min_x(scale.x.min), row);
-        name(ui, rect.with_max_x(scale.x.min - 4.0), handle, editor, commands);
-        if let Some(handle) = handle {
+    for (number, row) in own.into_iter().enumerate() {
+        let rect = rect_of(number);
+        stripe(ui, rect.with_min_x(scale.x.min), number);
+        name(ui, rect.with_max_x(scale.x.min - 4.0), row, editor, commands);
+        if let Row::Handle(handle) = row {
             spans::show(ui, rect.with_min_x(scale.x.min), scale, editor, handle, commands);
         }
         for key in editor.document().animation().keys() {
-            let own: Vec<KeyId> = match handle {
-                Some(handle) => key
-                    .has(handle.id)
-                    .then(|| KeyId::new(handle.id, key.time))
-                    .into_iter()
-                    .collect(),
-                None => present(editor, key),
-            };
+            let own = row.keys_in(editor, key);
             if !own.is_empty() {
                 let at = egui::pos2(scale.x_of(key.time), rect.center().y);
-                marks.push(Mark { own, at, handle, key });
+                marks.push(Mark { own, at, row, key });
             }
         }
     }
@@ -76,7 +71,7 @@ pub fn show(ui: &mut egui::Ui, scale: &TimeScale, editor: &Editor, commands: &mu
 struct Mark<'a> {
     own: Vec<KeyId>,
     at: Pos2,
-    handle: Option<&'a Handle>,
+    row: Row<'a>,
     key: &'a KeyFrame,
 }
 
@@ -93,13 +88,18 @@ impl Mark<'_> {
     ) {
         let selected = editor.view().selected_keys;
         let is_selected = self.own.iter().all(|id| selected.contains(id));
-        let id = egui::Id::unique(("key", self.handle.map(|handle| handle.id.0), self.key.time.to_bits()));
+        let id = egui::Id::unique(("key", self.row.of_keys(), self.key.time.to_bits()));
         let grip = Rect::from_center_size(self.at, vec2(2.0 * MARK + 4.0, HEIGHT)).intersect(canvas);
         if !grip.is_positive() {
             return;
         }
         let response = ui.interact(grip, id, Sense::click_and_drag());
-        let whose = self.handle.map_or("all", |handle| &*handle.name);
+        let whose = match self.row {
+            Row::All => "all".to_owned(),
+            Row::Handle(handle) => handle.name.clone(),
+            Row::Strength => format!("the strength, {:.0} %,", 100.0 * self.key.strength().unwrap_or(1.0)),
+            Row::Weights => "the weights".to_owned(),
+        };
         let animation = editor.document().animation();
         let label = match animation.frames() {
             Some(_) => format!("Key of {whose} at frame {}", animation.frame_of(self.key)),
@@ -150,12 +150,6 @@ fn chosen(selected: &BTreeSet<KeyId>, own: &[KeyId], is_added: bool, is_click: b
         return selected.iter().copied().filter(|id| !own.contains(id)).collect();
     }
     selected.iter().chain(own).copied().collect()
-}
-
-/// The keys of a moment whose handles exist.
-fn present(editor: &Editor, key: &KeyFrame) -> Vec<KeyId> {
-    let handles = key.handles().filter(|id| editor.document().handle(*id).is_some());
-    handles.map(|handle| KeyId::new(handle, key.time)).collect()
 }
 
 /// The time by which the selected keys are being dragged.
@@ -222,7 +216,12 @@ fn choose_in_box(ui: &egui::Ui, ground: &egui::Response, marks: &[Mark<'_>], edi
 fn menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let eases = [Ease::Smooth, Ease::Linear, Ease::Hold].map(Command::SetKeyEase);
     let groups = [
-        vec![Command::KeyHere, Command::KeySelected],
+        vec![
+            Command::KeyHere,
+            Command::KeySelected,
+            Command::KeyStrength,
+            Command::KeyWeights,
+        ],
         vec![
             Command::CopyKeys,
             Command::PasteKeys,
@@ -245,13 +244,17 @@ fn menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 }
 
 /// The name of a row; a click selects its handle.
-fn name(ui: &egui::Ui, rect: Rect, handle: Option<&Handle>, editor: &Editor, commands: &mut Outbox) {
+fn name(ui: &egui::Ui, rect: Rect, row: Row<'_>, editor: &Editor, commands: &mut Outbox) {
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    let handle = match row {
+        Row::Handle(handle) => Some(handle),
+        _ => None,
+    };
     let is_selected = handle.is_some_and(|handle| editor.view().selected == Some(handle.id));
-    let colour = match (handle, is_selected) {
+    let colour = match (row, is_selected) {
         (_, true) => ui.visuals().strong_text_color(),
-        (Some(_), false) => ui.visuals().text_color(),
-        (None, false) => ui.visuals().weak_text_color(),
+        (Row::All, false) => ui.visuals().weak_text_color(),
+        (_, false) => ui.visuals().text_color(),
     };
     let mut left = rect.left() + 4.0;
     if let Some(handle) = handle {
@@ -260,10 +263,9 @@ fn name(ui: &egui::Ui, rect: Rect, handle: Option<&Handle>, editor: &Editor, com
         painter.circle_filled(dot, 4.0, Color32::from_rgb(red, green, blue));
         left += 15.0;
     }
-    let words = handle.map_or("All", |handle| &*handle.name);
     let at = egui::pos2(left, rect.center().y);
     let font = egui::TextStyle::Body.resolve(ui.style());
-    painter.text(at, egui::Align2::LEFT_CENTER, words, font, colour);
+    painter.text(at, egui::Align2::LEFT_CENTER, row.name(), font, colour);
     let Some(handle) = handle else { return };
     let id = egui::Id::unique(("row of the timeline", handle.id.0));
     let response = ui.interact(rect, id, Sense::click());

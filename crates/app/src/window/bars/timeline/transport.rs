@@ -36,11 +36,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
         moment(ui, editor, commands);
         ui.separator();
-        // A sequence has no onion skins, and a single shape no path.
-        match editor.document().animation().frames() {
-            Some(_) => path(ui, editor, commands),
-            None => skins(ui, editor, commands),
+        // A single shape has no path.
+        if editor.document().animation().frames().is_some() {
+            path(ui, editor, commands);
         }
+        skins(ui, editor, commands);
         ui.separator();
         selected(ui, editor, commands);
     });
@@ -114,6 +114,12 @@ fn skins(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 .on_hover_text("Sets the frames from one ghost to the next.");
             ui.end_row();
         });
+        let vertices = editor.document().rest().len();
+        let wanted = usize::from(skins.before) + usize::from(skins.after);
+        if wanted > Skins::most_on(vertices) {
+            let most = Skins::most_on(vertices);
+            ui.label(format!("The mesh is so large that only the nearest {most} are shown."));
+        }
     });
     menu.response
         .on_hover_text("Sets the number, the distance and the colours of the onion skins.");
@@ -127,8 +133,8 @@ fn selected(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let selected = editor.view().selected_keys;
     let keys = editor.document().animation().keys().iter();
     let own = keys.filter(|key| {
-        let mut handles = key.handles();
-        handles.any(|handle| selected.contains(&KeyId::new(handle, key.time)))
+        let mut rows = key.rows();
+        rows.any(|row| selected.contains(&KeyId::new(row, key.time)))
     });
     let mut eases: Vec<Ease> = own.map(|key| key.ease).collect();
     eases.dedup();
