@@ -124,6 +124,6 @@ pub use tool::{
 };
 pub use view::{
     Before, Camera, Clay, ControlShape, Cursor, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look,
-    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, Skins, UpAxis, hit_gizmo,
+    NamedView, Orbit, Pick, Projection, Ray, Readout, Shading, Skins, UpAxis, hit_gizmo, up_axis_of,
 };
 pub use workspace::{RegionAction, SnapshotKey, StiffnessChange, stiffness_colour};

@@ -1,10 +1,10 @@
 //! The eye of a picture.
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Camera, NamedView, Projection, UpAxis};
+use pliant_editor::{Camera, NamedView, Projection};
 use pliant_mesh::{Model, bounding_box};
 
-use crate::options::{LookOptions, ProjectionName, StillOptions, Up, View};
+use crate::options::{LookOptions, ProjectionName, StillOptions, View};
 
 /// The factor by which the eye is farther away than for the rest shape alone, so that the whole bent shape is visible,
 /// too.
@@ -18,7 +18,7 @@ pub fn camera(options: &StillOptions, model: &Model, size_px: DVec2) -> Camera {
         .map(|v| model.surface.positions[v.index()]);
     let seen: Vec<DVec3> = seen.collect();
     let diagonal = bounding_box(&seen).map_or(0.0, |bounds| bounds.diagonal());
-    let mut camera = looking(options.look, diagonal);
+    let mut camera = looking(options.look, model, diagonal);
     camera.projection = match options.projection {
         ProjectionName::Perspective => Projection::Perspective,
         ProjectionName::Orthographic => Projection::Orthographic,
@@ -28,13 +28,10 @@ pub fn camera(options: &StillOptions, model: &Model, size_px: DVec2) -> Camera {
     camera
 }
 
-/// A camera that looks from this side at a model with this diagonal.
-pub fn looking(look: LookOptions, diagonal: f64) -> Camera {
+/// A camera that looks from this side at a model, whose rest shape has this diagonal.
+pub fn looking(look: LookOptions, model: &Model, diagonal: f64) -> Camera {
     let mut camera = Camera {
-        up: match look.up {
-            Up::Y => UpAxis::Y,
-            Up::Z => UpAxis::Z,
-        },
+        up: look.up.axis_of(model),
         scale: diagonal,
         ..Camera::default()
     };

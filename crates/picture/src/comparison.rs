@@ -343,7 +343,7 @@ fn camera_and_layout(job: &Comparison<'_>, model: &Model, outcomes: &[Outcome]) 
     if seen.is_empty() {
         seen = rest;
     }
-    let mut camera = looking(job.look, own);
+    let mut camera = looking(job.look, model, own);
     let seen_from = camera.axes().transpose();
     let extent = pliant_mesh::bounding_box(&seen.iter().map(|p| seen_from * *p).collect::<Vec<_>>())
         .map_or(DVec3::ONE, |bounds| bounds.extent());

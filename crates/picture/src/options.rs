@@ -1,21 +1,40 @@
 //! The options of a picture.
 
-use pliant_editor::Clay;
+use pliant_editor::{Clay, UpAxis, up_axis_of};
+use pliant_mesh::Model;
 
 use crate::choice::Choice;
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
+#[expect(missing_docs, reason = "the choices' help describes each")]
 pub enum Up {
     #[default]
+    Guess,
     Y,
     Z,
 }
 
 impl Up {
     /// Every axis.
-    pub const CHOICES: &[Choice<Self>] = &[Choice::of("y", Self::Y), Choice::of("z", Self::Z)];
+    pub const CHOICES: &[Choice<Self>] = &[
+        Choice::with_help(
+            "guess",
+            Self::Guess,
+            "The axis on which the shape stands, as the window guesses it",
+        ),
+        Choice::of("y", Self::Y),
+        Choice::of("z", Self::Z),
+    ];
+
+    /// The axis in pictures of this model.
+    pub(crate) fn axis_of(self, model: &Model) -> UpAxis {
+        match self {
+            Self::Guess => up_axis_of(model),
+            Self::Y => UpAxis::Y,
+            Self::Z => UpAxis::Z,
+        }
+    }
 }
 
 /// The direction of view of a picture.

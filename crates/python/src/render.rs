@@ -21,7 +21,7 @@ use crate::warned::warn;
 
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/render.txt"))]
 #[pyfunction]
-#[pyo3(signature = (file, *, output=None, edit=None, size=None, up="y", view="three-quarter", shading="clay", clay="clay", projection="perspective", flat=false, wireframe=false, borders=false, outlines=false, grid=false, shadow=false, transparent=false, turntable=None, weld=None))]
+#[pyo3(signature = (file, *, output=None, edit=None, size=None, up="guess", view="three-quarter", shading="clay", clay="clay", projection="perspective", flat=false, wireframe=false, borders=false, outlines=false, grid=false, shadow=false, transparent=false, turntable=None, weld=None))]
 #[expect(clippy::too_many_arguments, reason = "they are the command's arguments, by name")]
 pub fn render<'py>(
     py: Python<'py>,

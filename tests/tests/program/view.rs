@@ -10,7 +10,7 @@
 
 use std::path::Path;
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
 use pliant_editor::{Camera, Look, NamedView, Projection};
 use pliant_mesh::{Bvh, Model};
 use pliant_picture::drawing::{self, Drawing};
@@ -265,6 +265,35 @@ fn a_transparent_picture_has_alpha_only_where_the_surface_is() {
         off += usize::from(clear != opaque);
     }
     assert!(count > 1000 && off == 0, "{count} {off}");
+}
+
+#[test]
+fn a_shape_stands_in_a_picture_as_it_does_in_the_window_unless_the_axis_is_given() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    // A cone about the z axis, which stands on its disc.
+    let cone = pliant_mesh::shapes::turned(24, 24, |share| match share {
+        ..0.3 => DVec2::new(share / 0.3, -1.0),
+        _ => DVec2::new((1.0 - share) / 0.7, 2.0 * (share - 0.3) / 0.7 - 1.0),
+    });
+    let turn = DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+    let on_z = folder.write_mesh("z.off", &cone);
+    let on_y = folder.write_mesh("y.off", &pliant_mesh::shapes::moved(&cone, turn));
+    let drawn = |file: &Path, up: &[&str]| {
+        let output = folder.at("cone.png");
+        let words = ["render", "--size", "80x60", "--grid"]
+            .iter()
+            .chain(up)
+            .map(std::ffi::OsString::from);
+        run(words.chain(["--output".into(), output.clone().into(), file.into()])).done();
+        picture(&output)
+    };
+    for (file, own, other) in [(on_z, "z", "y"), (on_y, "y", "z")] {
+        let guessed = drawn(&file, &[]);
+        assert!(guessed == drawn(&file, &["--up", own]), "{own}");
+        assert!(guessed == drawn(&file, &["--up", "guess"]), "{own}");
+        assert!(guessed != drawn(&file, &["--up", other]), "{own}");
+    }
 }
 
 #[test]

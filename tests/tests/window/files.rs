@@ -15,8 +15,10 @@ use crate::window_rig::Session;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec3;
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
 use pliant_editor::Command;
+use pliant_mesh::DrawnVertex;
 use pliant_tests::{Folder, run};
 
 /// A folder with two balls, a note and a folder with a third ball, the first of which is open.
@@ -30,21 +32,23 @@ fn begin(folder: &Folder) -> Option<Session> {
     Session::begin_in(Source::File(first), AppDirectories::default())
 }
 
+/// The top of a ball is pulled up over its fixed lower half.
+const TOP_EDIT: &str = r#"{
+    "version": 1,
+    "method": { "name": "bilaplacian" },
+    "fixed": { "slab": { "axis": "z", "from": 0, "to": 0.3 } },
+    "handles": [ {
+        "name": "top",
+        "select": { "slab": { "axis": "z", "from": 0.9, "to": 1 } },
+        "transform": { "translation": [0, 0, 0.5] }
+    } ]
+}"#;
+
 #[test]
 fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
     let folder = Folder::new();
     let file = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(3));
-    let edit = r#"{
-        "version": 1,
-        "method": { "name": "bilaplacian" },
-        "fixed": { "slab": { "axis": "z", "from": 0, "to": 0.3 } },
-        "handles": [ {
-            "name": "top",
-            "select": { "slab": { "axis": "z", "from": 0.9, "to": 1 } },
-            "transform": { "translation": [0, 0, 0.5] }
-        } ]
-    }"#;
-    let edit = folder.write("ball.edit.json", edit);
+    let edit = folder.write("ball.edit.json", TOP_EDIT);
     let source = Source::of(Some(file.clone()), Some(edit.clone()));
     let Some(mut session) = Session::begin_in(source, AppDirectories::default()) else {
         return;
@@ -77,6 +81,52 @@ fn a_file_is_opened_with_an_edit_and_saved_in_its_place() {
     ];
     run([apply, original.as_os_str()].into_iter().chain(options)).done();
     assert_eq!(fs::read(file).unwrap(), fs::read(output).unwrap());
+}
+
+#[test]
+fn an_exported_edit_is_dropped_on_other_meshes_of_the_same_object() {
+    let folder = Folder::new();
+    let ball = pliant_mesh::shapes::icosphere(3);
+    let count = ball.positions.len() as u32;
+    // The same vertices from the last to the first.
+    let mut permuted = ball.clone();
+    permuted.positions.reverse();
+    for vertex in permuted.triangles.iter_mut().flatten() {
+        *vertex = DrawnVertex(count - 1 - vertex.0);
+    }
+    let own = folder.write_mesh("ball.off", &ball);
+    let permuted = folder.write_mesh("permuted.off", &permuted);
+    let finer = folder.write_mesh("finer.off", &pliant_mesh::shapes::icosphere(4));
+    let edit = folder.write("top.json", TOP_EDIT);
+    let exported = folder.at("exported.json");
+    let mut shapes = Vec::new();
+    for (file, edit) in [(own, &edit), (permuted, &exported), (finer, &exported)] {
+        let Some(mut session) = Session::begin_in(Source::File(file), AppDirectories::default()) else {
+            return;
+        };
+        session.drop_file(edit);
+        if shapes.is_empty() {
+            session.harness.state_mut().export_edit(&exported);
+            session.settle();
+        }
+        let view = session.harness.state().editor().view();
+        shapes.push((
+            view.model.unwrap().surface.positions.to_vec(),
+            view.displacements.to_vec(),
+        ));
+        let said = session.harness.state().headline().unwrap_or_default();
+        assert_eq!(said.contains("finds 100% of `top`"), edit == &exported, "{said}");
+    }
+    let at = |(positions, displacements): &(Vec<DVec3>, Vec<DVec3>), p: DVec3| {
+        let each = positions.iter().zip(displacements);
+        let nearest = each.min_by(|a, b| a.0.distance(p).total_cmp(&b.0.distance(p)));
+        nearest.map_or(DVec3::NAN, |(_, displacement)| *displacement)
+    };
+    for p in &shapes[0].0 {
+        let [own, permuted, finer] = [0, 1, 2].map(|number| at(&shapes[number], *p));
+        assert!(own.distance(permuted) < 1e-9, "{p}: {own}, {permuted}");
+        assert!(own.distance(finer) < 0.05, "{p}: {own}, {finer}");
+    }
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub(crate) struct CompareArguments {
 #[derive(Args, Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LookArguments {
     /// The axis that points up
-    #[arg(long, default_value = "y", value_parser = chosen(Up::CHOICES))]
+    #[arg(long, default_value = "guess", value_parser = chosen(Up::CHOICES))]
     pub up: Up,
     /// The direction of view
     #[arg(long, default_value = "three-quarter", value_parser = chosen(View::CHOICES))]

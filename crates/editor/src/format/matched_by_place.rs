@@ -12,6 +12,9 @@ pub struct MatchedByPlace {
     pub within: f64,
     /// The sets with recorded places: the handles in their order, then the free region.
     pub found: Vec<FoundPlaces>,
+    /// True if the mesh' triangles face the other way than those that the edit was made on. The edit is matched as if
+    /// they were turned.
+    pub turned: bool,
     /// Sentences about parts of the edit that stay behind.
     pub left_out: Vec<String>,
 }
@@ -46,6 +49,9 @@ impl MatchedByPlace {
             rounded(self.within),
             parts.join(", ")
         );
+        if self.turned {
+            sentence.push_str("; its triangles face the other way, which makes no difference");
+        }
         for left_out in &self.left_out {
             sentence = format!("{sentence}; {left_out}");
         }

@@ -20,6 +20,10 @@ const WITHIN: f64 = 0.02;
 /// A handle of which less than this share of its places is found is refused.
 const LEAST_FOUND: f64 = 0.5;
 
+/// A mesh faces the other way if this many times as many places have a surface there that faces the other way as have
+/// one that faces theirs.
+const TURNED: usize = 4;
+
 /// Vertices that are further from where their handle moves them than this share of the diagonal were painted in the bent
 /// shape.
 const BESIDE: f64 = 1e-4;
@@ -36,31 +40,38 @@ pub(super) struct Other<'a> {
     places: &'a Places,
     mesh: Oriented<'a>,
     tree: PlaceTree<'a>,
+    /// For each place, whether the surface is near.
+    is_found: Vec<bool>,
     /// The place of each surface vertex.
     of_each: Vec<Option<u32>>,
 }
 
 impl<'a> Other<'a> {
     pub(super) fn of(places: &'a Places, recorded: &'a Recorded, model: &'a Model) -> Self {
-        let mesh = Oriented::of(model);
         let tree = PlaceTree::of(recorded);
+        let (mesh, is_found) = facing_as(recorded, Oriented::of(model));
         let of_each = tree.of_each(&mesh);
         Self {
             places,
             mesh,
             tree,
+            is_found,
             of_each,
         }
+    }
+
+    /// Returns true if the triangles face the other way than those of the edit's mesh.
+    pub(super) fn is_turned(&self) -> bool {
+        self.mesh.is_turned
     }
 
     /// Finds the sets' places, and gives a handle that is smaller than this mesh' triangles the vertices next to them.
     pub(super) fn found(&mut self, edit: &EditFile) -> Result<MatchedByPlace, EditError> {
         let recorded = self.tree.recorded;
         let within = WITHIN * recorded.bounds.diagonal();
-        let is_found = self.are_found(within);
         let mut found = Vec::new();
         let share_of = |is_in: &[bool]| {
-            let own = recorded.numbers.iter().zip(&is_found);
+            let own = recorded.numbers.iter().zip(&self.is_found);
             let own = own.filter(|(number, _)| is_in[**number as usize]);
             let (count, all) = own.fold((0, 0), |(count, all), (_, is)| (count + usize::from(*is), all + 1));
             (all > 0).then(|| count as f64 / f64::from(all))
@@ -82,7 +93,7 @@ impl<'a> Other<'a> {
             let number = |place: &u32| recorded.numbers[*place as usize] as usize;
             if !self.of_each.iter().flatten().any(|place| is_in[number(place)]) {
                 let own = (0..recorded.numbers.len() as u32).filter(|place| is_in[number(place)]);
-                small.extend(own.filter(|place| is_found[*place as usize]));
+                small.extend(own.filter(|place| self.is_found[*place as usize]));
             }
             is_held.iter_mut().zip(is_in).for_each(|(held, own)| *held |= own);
         }
@@ -100,27 +111,9 @@ impl<'a> Other<'a> {
         Ok(MatchedByPlace {
             within,
             found,
+            turned: self.mesh.is_turned,
             left_out: Vec::new(),
         })
-    }
-
-    /// For each place, whether the surface is as near.
-    fn are_found(&self, within: f64) -> Vec<bool> {
-        let recorded = self.tree.recorded;
-        let surface = &self.mesh.model.surface;
-        let each = recorded.positions.par_iter().zip(&recorded.normals);
-        if surface.triangles.is_empty() {
-            let points = OrientedPoints::new(&surface.positions, &self.mesh.normals, within);
-            return each
-                .map_init(Vec::new, |found, (&position, &normal)| {
-                    points.nearest(position, normal, within, 1, found);
-                    !found.is_empty()
-                })
-                .collect();
-        }
-        let bvh = Bvh::build(&surface.positions, &surface.triangles);
-        each.map(|(&position, &normal)| bvh.distance_to_facing(position, normal, within).is_some())
-            .collect()
     }
 
     /// Matches the vertex next to each of these places with it.
@@ -290,6 +283,39 @@ impl<'a> Other<'a> {
     fn displacements(&self, at_places: &[DVec3]) -> Vec<DVec3> {
         let values = self.tree.field(&self.mesh, &self.of_each, at_places).into_iter();
         values.map(Option::unwrap_or_default).collect()
+    }
+}
+
+/// The mesh, turned if it faces the other way than the recorded one, and for each place whether its surface is near.
+///
+/// The two sides of a thin sheet are both near. The nearer one counts, and that is the facing one on a mesh with the same
+/// winding, however thin the sheet is, unless the scans differ by more than its thickness; then neither has the majority.
+fn facing_as<'a>(recorded: &Recorded, mesh: Oriented<'a>) -> (Oriented<'a>, Vec<bool>) {
+    let within = WITHIN * recorded.bounds.diagonal();
+    let surface = &mesh.model.surface;
+    let each = recorded.positions.par_iter().zip(&recorded.normals);
+    if surface.triangles.is_empty() {
+        let points = OrientedPoints::new(&surface.positions, &mesh.normals, within);
+        let are_near = each.map_init(Vec::new, |found, (&position, &normal)| {
+            points.nearest(position, normal, within, 1, found);
+            !found.is_empty()
+        });
+        let are_near = are_near.collect();
+        return (mesh, are_near);
+    }
+    let bvh = Bvh::build(&surface.positions, &surface.triangles);
+    let distances: Vec<[Option<f64>; 2]> = each
+        .map(|(&position, &normal)| [normal, -normal].map(|normal| bvh.distance_to_facing(position, normal, within)))
+        .collect();
+    let is_nearer = |a: Option<f64>, b: Option<f64>| a.is_some_and(|a| b.is_none_or(|b| a < b));
+    let facing = distances.iter().filter(|[own, other]| is_nearer(*own, *other)).count();
+    let turned = distances.iter().filter(|[own, other]| is_nearer(*other, *own)).count();
+    match turned > TURNED * facing {
+        true => (
+            mesh.turned(),
+            distances.iter().map(|[_, other]| other.is_some()).collect(),
+        ),
+        false => (mesh, distances.iter().map(|[own, _]| own.is_some()).collect()),
     }
 }
 

@@ -10,6 +10,7 @@ use super::field::FieldEntry;
 use super::matched_by_place::MatchedByPlace;
 use super::other_mesh::{Other, Scale};
 use super::places::Places;
+use super::selector::Selector;
 
 /// An edit by the numbers of the mesh on which it is used.
 #[derive(Clone, Debug)]
@@ -62,7 +63,11 @@ impl EditFile {
             stiffness: field(&self.stiffness, "stiffness", Scale::Logarithmic)?,
             continuity: field(&self.continuity, "continuity", Scale::Linear)?,
             loose_parts: loose_parts.collect::<Result<_, EditError>>()?,
-            inside_out: other.whole_parts(&self.inside_out, "inside_out")?,
+            // Parts that the first mesh had inside out face outwards on a mesh that faces the other way.
+            inside_out: match other.is_turned() {
+                true => Selector::None,
+                false => other.whole_parts(&self.inside_out, "inside_out")?,
+            },
             kept,
             ..self.clone()
         };

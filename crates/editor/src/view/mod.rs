@@ -28,4 +28,4 @@ pub(crate) use picking::Picking;
 pub use pointer::{Cursor, Readout};
 pub use skins::Skins;
 pub(crate) use state::View;
-pub(crate) use upright::up_axis_of;
+pub use upright::up_axis_of;

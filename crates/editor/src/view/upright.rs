@@ -27,7 +27,7 @@ const CLEARLY: f64 = 4.0;
 
 /// The up axis of a shape: Y, as in glTF, unless it stands clearly better with Z up. A shape that is thinnest along Z is
 /// left alone: a mask or a relief faces Z, and lies well on its back.
-pub(crate) fn up_axis_of(model: &Model) -> UpAxis {
+pub fn up_axis_of(model: &Model) -> UpAxis {
     let every = 1 + model.surface.positions.len() / SAMPLE;
     let shown = model.vertices_without_specks().step_by(every);
     let sample: Vec<DVec3> = shown.map(|vertex| model.surface.positions[vertex.index()]).collect();

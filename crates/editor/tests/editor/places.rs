@@ -333,8 +333,11 @@ fn the_sides_of_a_thin_sheet_stay_apart() {
         ..EditFile::default()
     };
     let exported = exported(&edit, &model);
-    for cells in [22, 47] {
-        let (flat, other) = sheet(cells);
+    for (cells, is_turned) in [(22, false), (47, false), (22, true), (47, true)] {
+        let (flat, mut other) = sheet(cells);
+        if is_turned {
+            other = weld(turned(other.rest()));
+        }
         let setup = exported.resolve(&other).unwrap();
         let mut on_top = 0;
         for (p, vertex) in flat.positions.iter().zip(other.drawn.surface_vertices()) {
@@ -349,6 +352,31 @@ fn the_sides_of_a_thin_sheet_stay_apart() {
             "{cells}: {on_top} of {meant}"
         );
     }
+}
+
+/// The same vertices with triangles of the opposite winding.
+fn turned(mut drawn: Drawn) -> Drawn {
+    drawn.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    drawn
+}
+
+#[test]
+fn a_mesh_of_the_opposite_winding_is_matched_like_the_same_one() {
+    let drawn = body(40, 32);
+    let edit = EditFile {
+        inside_out: Selector::Component(0),
+        ..painted(&drawn)
+    };
+    let exported = exported(&edit, &weld(drawn));
+    let other = body(37, 41);
+    let [same, opposite] = [other.clone(), turned(other)].map(|drawn| exported.resolve(&weld(drawn)).unwrap());
+    assert_eq!(opposite.roles, same.roles);
+    assert_eq!(opposite.stiffness, same.stiffness);
+    let [same_matched, opposite_matched] = [&same, &opposite].map(|setup| setup.matched.clone().unwrap());
+    assert_eq!((same_matched.turned, opposite_matched.turned), (false, true));
+    assert_eq!(opposite_matched.found, same_matched.found);
+    // A part that was inside out faces outwards already.
+    assert_eq!((same.inside_out.len(), opposite.inside_out.len()), (1, 0));
 }
 
 #[test]

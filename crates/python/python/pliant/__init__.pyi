@@ -184,7 +184,7 @@ def render(
     output: File | None = None,
     edit: FileOrMembers | None = None,
     size: str | tuple[int, int] | None = None,
-    up: Literal["y", "z"] = "y",
+    up: Literal["guess", "y", "z"] = "guess",
     view: Literal["front", "back", "left", "right", "top", "bottom", "three-quarter"] = "three-quarter",
     shading: Literal[
         "clay", "material", "regions", "stiffness", "distortion", "area", "curvature", "zebra", "normals"
@@ -208,7 +208,7 @@ def render(
     :param output: a PNG file to write. Without it the pixels are returned.
     :param edit: an edit's or a project's file, or an edit as a dict.
     :param size: the width and height in pixels, as a text such as `1280x800` or as a pair; by default 1280 by 800.
-    :param up: the axis that points up.
+    :param up: the axis that points up; `guess` is the one on which the shape stands, as the window guesses it.
     :param view: the direction of view.
     :param shading: the surface's colours.
     :param clay: the clay of the shadings `clay` and `regions`.

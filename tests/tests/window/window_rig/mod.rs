@@ -7,6 +7,8 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -15,6 +17,20 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use pliant_app::window::{AppDirectories, Application, Source};
+
+/// A file that another program drops onto the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
 
 /// Drives the application like a person.
 pub struct Session {
@@ -143,6 +159,13 @@ impl Session {
         self.harness.key_press_modifiers(modifiers, key);
         self.harness.step();
         self.settle_if_idle();
+    }
+
+    /// Drops a file onto the window.
+    pub fn drop_file(&mut self, path: &Path) {
+        let file = Arc::new(Dropped(path.to_owned()));
+        self.harness.input_mut().dropped_files.push(file);
+        self.settle();
     }
 
     /// A modal transform is active after G, R, S: only a confirmed one settles.

@@ -102,14 +102,7 @@ impl Application {
             (Purpose::SaveAs, Some(path)) => self.save_as(path),
             (Purpose::SaveMorph, Some(path)) => self.save_morph_to(path),
             (Purpose::SaveProject, Some(path)) => self.save_project_to(path),
-            (Purpose::ExportEdit, Some(path)) => match (self.editor.edit_file(), self.editor.view().model) {
-                (Ok(edit), Some(model)) => {
-                    let model = Arc::clone(model);
-                    self.save_copy(&path, Content::Edit(Box::new(edit), model));
-                }
-                (Err(error), _) => self.fail(error.to_string()),
-                (Ok(_), None) => {}
-            },
+            (Purpose::ExportEdit, Some(path)) => self.export_edit(&path),
             (Purpose::Append, Some(path)) => self.append(path),
             (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
             (Purpose::ExportFrames, Some(path)) => self.export_frames(&path),

@@ -1,6 +1,7 @@
 //! Copies of the unsaved work: an edit, a picture, an animation or the frames of a sequence.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use pliant_engine::watch::Watch;
 use pliant_engine::{ExistingFrames, animation_path};
@@ -9,6 +10,18 @@ use crate::window::application::Application;
 use crate::window::files::save_request::{AnimationToWrite, Content, FramesToWrite};
 
 impl Application {
+    /// Writes the edit, with the places by which other meshes find its parts, under `path`.
+    pub fn export_edit(&mut self, path: &Path) {
+        match (self.editor.edit_file(), self.editor.view().model) {
+            (Ok(edit), Some(model)) => {
+                let model = Arc::clone(model);
+                self.save_copy(path, Content::Edit(Box::new(edit), model));
+            }
+            (Err(error), _) => self.fail(error.to_string()),
+            (Ok(_), None) => {}
+        }
+    }
+
     /// Writes the document's unsaved changes.
     pub(super) fn save_copy(&mut self, path: &Path, content: Content) {
         // A failure before this is over.

@@ -26,7 +26,10 @@ const PIECE: usize = 1 << 10;
 /// The vertices of a surface with their normals at rest.
 pub(in crate::format) struct Oriented<'a> {
     pub model: &'a Model,
+    /// Unit normals, or 0.
     pub normals: Vec<DVec3>,
+    /// True if the normals point to the other side of the triangles.
+    pub is_turned: bool,
 }
 
 impl<'a> Oriented<'a> {
@@ -34,7 +37,18 @@ impl<'a> Oriented<'a> {
         let mut normals = Vec::new();
         let surface = &model.surface;
         vertex_normals(&surface.triangles, &model.topology, &surface.positions, &mut normals);
-        Self { model, normals }
+        Self {
+            model,
+            normals,
+            is_turned: false,
+        }
+    }
+
+    /// The same vertices as if each triangle had the opposite winding.
+    pub fn turned(mut self) -> Self {
+        self.normals.iter_mut().for_each(|normal| *normal = -*normal);
+        self.is_turned = !self.is_turned;
+        self
     }
 
     pub fn positions(&self) -> &'a [DVec3] {
