@@ -9,9 +9,9 @@
 
 use std::time::{Duration, Instant};
 
-use crate::window_rig::Session;
+use crate::window_rig::{Session, colour_at};
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, Rect, pos2, vec2};
+use egui::{Key, Modifiers, Pos2, Rect, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DQuat, DVec3};
 use pliant_editor::{Command, Document, HandleTransform};
@@ -249,16 +249,17 @@ pub fn picture(session: &mut Session) -> image::RgbaImage {
     }
 }
 
-/// The number of places of the view in which two pictures differ, without the text over its top and its corner.
+/// The area of the view, in square points, in which two pictures differ, without the text over its top and its corner.
 pub fn differences(session: &Session, a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
     let view = session.harness.state().view_rect();
+    let inner = Rect::from_min_max(view.min + vec2(60.0, 130.0), view.max - vec2(60.0, 60.0));
     let (columns, rows) = (
-        view.left() as u32 + 60..view.right() as u32 - 60,
-        view.top() as u32 + 130..view.bottom() as u32 - 60,
+        inner.left() as usize..inner.right() as usize,
+        inner.top() as usize..inner.bottom() as usize,
     );
-    let places = columns.flat_map(|x| rows.clone().map(move |y| (x, y)));
-    let differ = |&(x, y): &(u32, u32)| {
-        let pair = a.get_pixel(x, y).0.into_iter().zip(b.get_pixel(x, y).0);
+    let places = columns.flat_map(|x| rows.clone().map(move |y| pos2(x as f32, y as f32)));
+    let differ = |place: &Pos2| {
+        let pair = colour_at(a, *place).0.into_iter().zip(colour_at(b, *place).0);
         pair.into_iter().any(|(a, b)| a.abs_diff(b) > 24)
     };
     places.filter(differ).count()

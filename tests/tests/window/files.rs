@@ -11,9 +11,9 @@ use std::ffi::OsStr;
 use std::fs;
 use std::time::{Duration, Instant};
 
-use crate::window_rig::Session;
+use crate::window_rig::{Session, colour_at};
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Rect};
+use egui::{Event, Key, Modifiers, Rect, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use pliant_app::window::{AppDirectories, KeepOriginal, Source, original_name};
@@ -143,10 +143,9 @@ fn a_scan_that_is_inside_out_is_shown_and_saved_facing_outwards() {
     // The middle of the view, without the panels' texts.
     let middle = |session: &mut Session| {
         let picture = session.harness.render().unwrap();
-        let (centre, scale) = (view.center(), session.harness.ctx.pixels_per_point());
-        let at = |x: f32, y: f32| *picture.get_pixel((x * scale) as u32, (y * scale) as u32);
-        let steps = (-8..=8).flat_map(|x| (-8..=8).map(move |y| (5.0 * x as f32, 5.0 * y as f32)));
-        steps.map(|(x, y)| at(centre.x + x, centre.y + y).0).collect::<Vec<_>>()
+        let steps = (-8..=8).flat_map(|x| (-8..=8).map(move |y| vec2(5.0 * x as f32, 5.0 * y as f32)));
+        let colours = steps.map(|step| colour_at(&picture, view.center() + step).0);
+        colours.collect::<Vec<_>>()
     };
     let faces_outwards = middle(&mut session);
     drop(session);

@@ -11,8 +11,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::window_rig::Session;
-use egui::{Key, Modifiers, Rect, vec2};
+use crate::window_rig::{Session, colour_at};
+use egui::{Key, Modifiers, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use image::Rgba;
@@ -267,7 +267,7 @@ fn clay_is_seen_until_the_textures_are_there() {
     let middle = |session: &mut Session| {
         let at = session.harness.state().view_rect().center();
         let picture = session.harness.render().unwrap();
-        *picture.get_pixel(at.x as u32, at.y as u32)
+        colour_at(&picture, at)
     };
     let clay = middle(&mut session);
     session
@@ -302,11 +302,11 @@ fn what_has_no_material_is_not_overexposed() {
     let view = session.harness.state().view_rect().shrink(20.0);
     let picture = session.harness.render().unwrap();
     let of_ball = (view.left() as u32..view.right() as u32)
-        .flat_map(|x| (view.top() as u32..view.bottom() as u32).map(move |y| (x, y)))
-        .filter(|&(x, y)| (vec2(x as f32, y as f32) - view.center().to_vec2()).length() < 0.2 * view.height());
+        .flat_map(|x| (view.top() as u32..view.bottom() as u32).map(move |y| pos2(x as f32, y as f32)))
+        .filter(|place| place.distance(view.center()) < 0.2 * view.height());
     let mut brightness: Vec<u8> = of_ball
-        .map(|(x, y)| {
-            let Rgba([red, green, blue, _]) = *picture.get_pixel(x, y);
+        .map(|place| {
+            let Rgba([red, green, blue, _]) = colour_at(&picture, place);
             red.max(green).max(blue)
         })
         .collect();

@@ -13,12 +13,12 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::window_rig::Session;
+use crate::window_rig::{Session, colour_at};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
-use pliant_app::window::{Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
+use pliant_app::window::{AppDirectories, Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
 use pliant_deform::{Loose, METHODS};
 use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
@@ -184,7 +184,7 @@ fn a_stroke_of_stiffness_is_seen_while_it_goes_on_however_stiffness_is_shown() {
         session.settle();
         let pixel = |session: &mut Session| {
             let picture = session.harness.render().unwrap();
-            picture.get_pixel(middle.x as u32, middle.y as u32).0
+            colour_at(&picture, middle).0
         };
         let before = pixel(&mut session);
         session.pointer(middle, Some(true));
@@ -436,7 +436,11 @@ fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
 /// unchanged.
 #[test]
 fn two_methods_are_compared_on_the_same_drag() {
-    let Some(mut session) = Session::begin() else { return };
+    let folder = Folder::new();
+    let ball = folder.write_mesh("ball.off", &pliant_mesh::shapes::icosphere(4));
+    let Some(mut session) = Session::begin_in(Source::File(ball), AppDirectories::default()) else {
+        return;
+    };
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
     session.settle();

@@ -32,6 +32,15 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
+/// The pixels of a point of the window, on each side: few, because drawing in software takes most of a session's time.
+pub const PIXELS_PER_POINT: f32 = 0.5;
+
+/// The colour at a place of the window in its picture.
+pub fn colour_at(picture: &image::RgbaImage, place: Pos2) -> image::Rgba<u8> {
+    let [x, y] = (place * PIXELS_PER_POINT).into();
+    *picture.get_pixel(x as u32, y as u32)
+}
+
 /// Drives the application like a person.
 pub struct Session {
     pub harness: Harness<'static, Application>,
@@ -58,6 +67,7 @@ impl Session {
         }
         let harness = Harness::builder()
             .with_size(vec2(1000.0, 700.0))
+            .with_pixels_per_point(PIXELS_PER_POINT)
             .with_max_steps(64)
             .wgpu()
             .build_eframe(move |context| {
