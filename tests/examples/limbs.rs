@@ -71,7 +71,7 @@ const LIMBS: &[Limb] = &[
     brush("beast, right thigh", "beast.obj", NamedView::Front, [0.38, 0.36], 0.07, RIGHT),
     brush("beast, left thigh", "beast.obj", NamedView::Front, [0.62, 0.36], 0.07, LEFT),
     brush("beast, right arm", "beast.obj", NamedView::Front, [0.24, 0.74], 0.05, [[0.43, 0.57], [0.0, 1.0]]),
-    brush("horse, foreleg", "horse.ply", NamedView::Left, [0.3, 0.3], 0.05, [[0.5, 1.0], [0.0, 1.0]]),
+    brush("horse, foreleg", "horse.ply", NamedView::Left, [0.31, 0.38], 0.05, [[0.5, 1.0], [0.0, 1.0]]),
     brush("horse, hind leg", "horse.ply", NamedView::Left, [0.9, 0.4], 0.06, [[0.0, 0.6], [0.0, 1.0]]),
     brush("horse, neck", "horse.ply", NamedView::Left, [0.2, 0.8], 0.1, [[0.0, 1.0], [0.0, 0.45]]),
     brush("creature, tail", "creature.glb", NamedView::Left, [0.2, 0.27], 0.06, [[0.5, 1.0], [0.0, 1.0]]),

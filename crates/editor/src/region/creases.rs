@@ -21,6 +21,12 @@ const SMOOTH_RADII: f64 = 0.15;
 /// So near to the handle, in radii, creases do not count: a handle may end in one, and still needs room to bend.
 const FREE_RADII: f64 = 0.5;
 
+/// A handle of at least so many times the scale of its limb goes all along it, as around a spine.
+const LONG_SCALES: f64 = 2.0;
+
+/// Beyond such a handle, ways keep their length over so many times that scale, so that the body has room to bend.
+const ROOM_SCALES: f64 = 0.5;
+
 /// The search for the vertices that a handle reaches, with memory that is kept between handles.
 #[derive(Default)]
 pub(super) struct CreaseSearch {
@@ -69,7 +75,9 @@ impl CreaseSearch {
         cancel: &Cancel,
     ) -> Result<&[(SurfaceVertex, f64)], Cancelled> {
         self.search_plain(surface, topology, members, most);
-        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, scale, cancel)? {
+        let is_long = radius >= LONG_SCALES * scale;
+        let room = if is_long { ROOM_SCALES * scale } else { 0.0 };
+        if let Some(beyond) = limb_end(&mut self.search, surface, topology, members, [scale, room], cancel)? {
             self.stretch.resize(surface.positions.len(), 1.0);
             for (vertex, times) in beyond {
                 self.stretch[vertex.index()] = times;

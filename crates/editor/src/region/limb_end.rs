@@ -16,9 +16,6 @@ use super::fronts::{Way, ways};
 /// the other leg.
 const AROUND_RADII: f64 = 8.0;
 
-/// Distances between places there are at most so many times as long.
-const ACROSS: f64 = 3.0;
-
 /// A way on is apart from others over at least so many radii.
 const WAY_RADII: f64 = 0.25;
 
@@ -44,9 +41,10 @@ const ROOM_RADII: f64 = 0.5;
 /// Beyond the limb's end, a way counts as so many times longer.
 const BEYOND: f64 = 4.0;
 
-/// By how many times ways count as longer at vertices beyond the end of the limb on which a handle of this radius with
-/// these members is; infinitely many on a limb beside it. `None` if it is on no limb, or the limb meets no other one near
-/// the handle.
+/// By how many times ways count as longer at vertices beyond the end of the limb on which a handle with these members is;
+/// infinitely many on a limb beside it. `None` if it is on no limb, or the limb meets no other one near the handle. The
+/// limb has the scale of a round handle of this radius. Within `room` of the handle, ways on the body keep their length: a
+/// handle that is as large as its limb ends where the limb does.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
@@ -55,7 +53,7 @@ pub(super) fn limb_end(
     surface: &Surface,
     topology: &Topology,
     members: &[(SurfaceVertex, f64)],
-    radius: f64,
+    [radius, room]: [f64; 2],
     cancel: &Cancel,
 ) -> Result<Option<Vec<(SurfaceVertex, f64)>>, Cancelled> {
     let position = |v: SurfaceVertex| surface.positions[v.index()];
@@ -91,7 +89,7 @@ pub(super) fn limb_end(
         // The handle may hold the limb's tip itself.
         limb = surroundings.limb(None, &ways.all.iter().collect::<Vec<_>>())?;
     }
-    limb.map(|limb| surroundings.beyond(&limb)).transpose()
+    limb.map(|limb| surroundings.beyond(&limb, room)).transpose()
 }
 
 /// The surface around a handle.
@@ -171,7 +169,7 @@ impl Surroundings<'_> {
     }
 
     /// By how many times ways count as longer beyond a limb's end.
-    fn beyond(&mut self, limb: &Limb<'_>) -> Result<Vec<(SurfaceVertex, f64)>, Cancelled> {
+    fn beyond(&mut self, limb: &Limb<'_>, room: f64) -> Result<Vec<(SurfaceVertex, f64)>, Cancelled> {
         let Limb {
             from_tip,
             middle,
@@ -180,7 +178,8 @@ impl Surroundings<'_> {
         let nearest = meetings.iter().map(|meeting| meeting.end).fold(f64::INFINITY, f64::min);
         let end = nearest.max(*middle);
         let beyond = self.around.iter().filter(|(v, _)| from_tip[v.index()] > end);
-        let mut times: Vec<(SurfaceVertex, f64)> = beyond.map(|&(v, _)| (v, BEYOND)).collect();
+        let times = |&(v, distance): &(SurfaceVertex, f64)| (v, if distance < room { 1.0 } else { BEYOND });
+        let mut times: Vec<(SurfaceVertex, f64)> = beyond.map(times).collect();
         let near = |meeting: &&Meeting<'_>| meeting.end <= nearest + NEAR_RADII * self.radius;
         for Meeting { way, turn, .. } in meetings.iter().filter(near).collect::<Vec<_>>() {
             let from_way = self.distances(&way.end)?;
@@ -202,11 +201,11 @@ impl Surroundings<'_> {
         let within = |v: SurfaceVertex| if self.is_around[v.index()] { 1.0 } else { f64::INFINITY };
         let seeds: Vec<(SurfaceVertex, f64)> = from.iter().map(|&v| (v, 0.0)).collect();
         let mut distances = vec![f64::INFINITY; self.surface.positions.len()];
-        let limit = ACROSS * AROUND_RADII * self.radius;
         let triangles = &self.surface.triangles;
+        // The surroundings bound the search.
         for &(v, at) in self
             .search
-            .within_stretched(triangles, self.topology, position, within, &seeds, limit)
+            .within_stretched(triangles, self.topology, position, within, &seeds, f64::MAX)
         {
             distances[v.index()] = at;
         }

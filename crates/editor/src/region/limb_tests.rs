@@ -159,6 +159,26 @@ fn a_handle_on_a_leg_bends_it_up_to_the_hip_and_leaves_the_other_leg_and_the_tru
 }
 
 #[test]
+fn a_handle_along_a_whole_leg_bends_the_hip_and_leaves_the_other_leg() {
+    for lean_deg in [0.0, 10.0, 20.0_f64] {
+        let bars = legs(0.5, lean_deg.to_radians());
+        // As a spine makes it: 2.5 half thicknesses.
+        let length = 2.5 * bars[0].radius;
+        let along = 0.1..2.0;
+        let bounded = of_ring(&bars, along.clone(), Reach::Bounded(length));
+        assert!(
+            free_share(&bars, 0, -0.2..0.09, &bounded) > 0.5,
+            "{lean_deg}: the hip bends"
+        );
+        assert!(free_share(&bars, 1, 0.15..1.0, &bounded) < 0.02, "{lean_deg}");
+        assert!(free_share(&bars, 2, 0.3..1.0, &bounded) == 0.0, "{lean_deg}");
+        let plain = of_ring(&bars, along, Reach::Length(length));
+        let other = free_share(&bars, 1, 0.0..1.0, &plain);
+        assert!(other > 0.05, "{lean_deg}: it needs to be held back: {other}");
+    }
+}
+
+#[test]
 fn a_handle_on_a_branch_of_tubes_at_any_angle_leaves_the_other_branch() {
     for half_deg in [20.0, 35.0, 50.0, 65.0_f64] {
         let (sin, cos) = half_deg.to_radians().sin_cos();

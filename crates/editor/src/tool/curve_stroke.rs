@@ -209,7 +209,7 @@ impl Gesture for CurveStroke {
     fn found(&mut self, context: &mut Context<'_>, limb: Enclosed) -> Next {
         match self.spine.take().zip(limb.reach) {
             Some((curve, reach)) if !limb.vertices.is_empty() => {
-                self.finish(context, curve, limb.vertices, Reach::Length(reach))
+                self.finish(context, curve, limb.vertices, Reach::Bounded(reach))
             }
             _ => self.refuse(context),
         }
