@@ -38,6 +38,7 @@ pub fn give_frames(rig: &mut Rig) {
     rig.send(Event::OpenedSequence {
         count: COUNT,
         shown: None,
+        fps: None,
     });
     deliver(rig);
 }
