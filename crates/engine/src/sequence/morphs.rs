@@ -30,9 +30,15 @@ impl Morphs {
     pub fn of(file: &Loaded, fps: Option<f64>, watch: &Watch) -> Result<Self, EngineError> {
         let found = file.scene.morph_playback(&file.path.to_string_lossy(), &watch.cancel)?;
         let playback = found.ok_or_else(|| {
+            let remedy = match file.scene.summary().animations {
+                0 => "give a file that has one, a folder of frames, or a .pc2 or .mdd cache",
+                _ => {
+                    "its animations move joints or nodes, which `pliant apply` keeps while it edits the stored pose; to edit \
+                     their frames, bake them to morph targets, numbered files or a .pc2 or .mdd cache"
+                }
+            };
             EngineError::Unsupported(format!(
-                "{} has no animation of morph targets: give a file that has one, a folder of frames, or a .pc2 or .mdd \
-                 cache",
+                "{} has no animation of morph targets: {remedy}",
                 shown(&file.path)
             ))
         })?;
