@@ -85,6 +85,8 @@ pub enum Event {
         count: usize,
         /// The frame to show; `None` is the document's own.
         shown: Option<usize>,
+        /// The frames a second at which it is played; `None` is the document's own.
+        fps: Option<f64>,
     },
     /// A frame of the sequence was read: the displacements of its surface vertices from the file's shape, or the reason
     /// why it can't be shown, in one sentence.

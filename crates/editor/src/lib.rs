@@ -60,6 +60,7 @@ mod former;
 mod ground_axis;
 mod input;
 mod jobs;
+mod key_space;
 mod lines;
 mod outline;
 mod pickable;
@@ -106,6 +107,7 @@ pub use jobs::{
     Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
     PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
 };
+pub use key_space::KeySpace;
 pub use lines::Lines;
 pub use region::{Counts, FoundLimb, Region, Rim};
 pub use revision::Revision;
@@ -115,8 +117,8 @@ pub use snapshot::Snapshot;
 pub use status::thousands;
 pub use stitching::{MergeChange, MergeSettings, MeshChange, NewMesh, REACH_RANGE, StitchRequest};
 pub use timeline::{
-    BodyMotion, FollowedFrame, FollowedHandle, Following, Footprints, HandlePlace, KeySpace, SequenceTimeline,
-    Timeline, middle_of,
+    BodyMotion, FollowedFrame, FollowedHandle, Following, Footprints, HandlePlace, SequenceTimeline, Timeline,
+    middle_of,
 };
 pub use tool::{
     BrushMetric, Constraint, Correction, CorrectionBrush, Depth, FlowAction, FlowBrush, PointedRim, RimUse,

@@ -136,7 +136,7 @@ pub fn animate<'py>(
 #[doc = include_str!(concat!(env!("OUT_DIR"), "/sequence.txt"))]
 #[pyfunction]
 #[pyo3(signature = (
-    frames, *, edit, output, mesh=None, report=None, fps=24.0, replace=false, method=None, memory=None, weld=None
+    frames, *, edit, output, mesh=None, report=None, fps=None, replace=false, method=None, memory=None, weld=None
 ))]
 #[expect(clippy::too_many_arguments, reason = "they are the command's arguments, by name")]
 pub fn sequence<'py>(
@@ -146,13 +146,15 @@ pub fn sequence<'py>(
     output: PathBuf,
     mesh: Option<PathBuf>,
     report: Option<PathBuf>,
-    fps: f64,
+    fps: Option<f64>,
     replace: bool,
     method: Option<&Bound<'py, PyAny>>,
     memory: Option<&Bound<'py, PyAny>>,
     weld: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_range("fps", fps, FRAME_RATES)?;
+    if let Some(fps) = fps {
+        check_range("fps", fps, FRAME_RATES)?;
+    }
     let bending = Bending::of(edit, method, memory, weld)?;
     let name = bending.edit.own_name();
     bending.run(py, |watch, edit| {

@@ -56,9 +56,10 @@ pub(crate) struct SequenceArguments {
     /// The file for the numbers of frames and the warnings
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// The frames a second in which a glTF's animation is edited
-    #[arg(long, value_name = "F", default_value = "24", value_parser = frame_rate)]
-    pub fps: f64,
+    /// The frames a second in which a glTF's animation is edited. Without it every key of the animation is a frame: the
+    /// rate is the lowest one of at least 24 at which that is so, and keys at uneven times are frames beside those at 24
+    #[arg(long, value_name = "F", value_parser = frame_rate)]
+    pub fps: Option<f64>,
     /// Allow numbered files of a glTF's animation to replace existing ones
     #[arg(long)]
     pub replace: bool,

@@ -3,10 +3,11 @@
 use super::entry::{Action, Entry, Reason, Scope, State, alt, always, character, ctrl, item, unless};
 use crate::document::{Animation, KeyFrame, KeyId};
 use crate::ease::Ease;
+use crate::key_space::KeySpace;
 use crate::view::Skins;
 use crate::workspace::{
-    copy_keys, delete_keys, go_to, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease, set_span, step_frames,
-    stretch_keys,
+    copy_keys, delete_keys, go_to, move_keys, neighbour_key, paste_keys, set_fps, set_key_ease, set_key_space,
+    set_span, step_frames, stretch_keys,
 };
 
 /// Shows or hides the timeline.
@@ -258,6 +259,35 @@ pub(super) const SET_KEY_EASE: Entry<Ease> = Entry {
     scope: Scope::Document,
     unavailable: |state, _| no_keys(state),
     action: Action::Do(|context, ease| set_key_ease(context.workspace, ease)),
+};
+
+/// Chooses the axes of the selected keys.
+pub(super) const SET_KEY_SPACE: Entry<KeySpace> = Entry {
+    listed: &[
+        item(
+            KeySpace::Local,
+            "Keys turn with their handles",
+            "Keeps the selected keys of a sequence the same to their handles, which may turn from frame to frame.",
+            "animation keyframes space local axes",
+            &[],
+        ),
+        item(
+            KeySpace::World,
+            "Keys keep the world's axes",
+            "Keeps the selected keys of a sequence the same to the world's axes from frame to frame.",
+            "animation keyframes space world axes",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: |state, _| {
+        let is_sequence = state.workspace.document.animation().frames().is_some();
+        no_keys(state).or(unless(
+            is_sequence,
+            "Only keys of a sequence have axes: their handles turn from frame to frame.",
+        ))
+    },
+    action: Action::Do(|context, space| set_key_space(context.workspace, space)),
 };
 
 /// Changes the span of a key.

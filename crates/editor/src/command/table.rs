@@ -19,6 +19,7 @@ use crate::document::{
 };
 use crate::ease::Ease;
 use crate::jobs::Symmetry;
+use crate::key_space::KeySpace;
 use crate::stitching::{MergeSettings, MeshChange};
 use crate::tool::{
     BrushMetric, Context, CorrectionBrush, Depth, FlowBrush, Gesture, StiffnessBrush, StrokeShape, ToolMode,
@@ -224,6 +225,8 @@ commands! {
     PasteKeys = animation::PASTE_KEYS;
     /// Gives the selected keys another way to the next.
     SetKeyEase(ease: Ease) = animation::SET_KEY_EASE;
+    /// Chooses the axes in which the selected keys of a sequence stay the same.
+    SetKeySpace(space: KeySpace) = animation::SET_KEY_SPACE;
     /// Changes the first and the last frame over which a key of a sequence spreads, with all keys of its span.
     SetSpan(id: KeyId, ends: [usize; 2]) = animation::SET_SPAN;
     /// Chooses the number of frames a second.

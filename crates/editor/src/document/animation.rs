@@ -12,6 +12,7 @@ use super::handle_mix::HandleMix;
 use super::key_id::{KeyId, KeyRow};
 use super::pose::Placed;
 use crate::ease::Ease;
+use crate::key_space::KeySpace;
 
 /// The frames a second of an animation that has no other rate.
 const FPS: f64 = 24.0;
@@ -52,6 +53,8 @@ pub struct KeyFrame {
     pub(crate) curves: BTreeMap<HandleId, HandleCurve>,
     /// The first and the last frame of a sequence over which the key of each handle spreads.
     pub(crate) spans: BTreeMap<HandleId, [usize; 2]>,
+    /// The handles of a sequence whose keys stay the same to the world's axes, not to the handle's own.
+    pub(crate) in_world: BTreeSet<HandleId>,
     /// The weights of the method's examples, if they bend the surface.
     pub(crate) weights: Option<Vec<Option<f64>>>,
     /// The share of the edit that is made, from 0 to 1. If a key of the animation has one, all keys have the whole
@@ -78,6 +81,14 @@ impl KeyFrame {
     /// The weights of the method's examples, if it has some.
     pub fn weights(&self) -> Option<&[Option<f64>]> {
         self.weights.as_deref()
+    }
+
+    /// The axes in which the key of a handle in a sequence stays the same.
+    pub fn space(&self, handle: HandleId) -> KeySpace {
+        match self.in_world.contains(&handle) {
+            true => KeySpace::World,
+            false => KeySpace::Local,
+        }
     }
 
     /// The rows in which it stands.
@@ -200,6 +211,8 @@ impl Animation {
         match keys.binary_search_by(|other| other.time.total_cmp(&time)) {
             Ok(place) => {
                 let own = &mut keys[place];
+                own.in_world.retain(|id| !key.handles.contains_key(id));
+                own.in_world.extend(key.in_world);
                 own.handles.extend(key.handles);
                 own.curves.extend(key.curves);
                 own.spans.extend(key.spans);
@@ -228,6 +241,10 @@ impl Animation {
                 .into_iter()
                 .partition(|(id, _)| is_taken(*id));
             key.spans = rest;
+            let (in_world, rest) = std::mem::take(&mut key.in_world)
+                .into_iter()
+                .partition(|id| is_taken(*id));
+            key.in_world = rest;
             let is_row_taken = |row: KeyRow| ids.contains(&KeyId::new(row, key.time));
             let weights = key.weights.take_if(|_| is_row_taken(KeyRow::Weights));
             let strength = key.strength.take_if(|_| is_row_taken(KeyRow::Strength));
@@ -237,6 +254,7 @@ impl Animation {
                 handles: own,
                 curves,
                 spans,
+                in_world,
                 weights,
                 strength,
             });

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::animation::{Animation, KeyFrame};
 use super::handle::HandleId;
 use super::key_id::KeyId;
+use crate::key_space::KeySpace;
 
 /// The frames on each side of a new key over which it spreads.
 const HALF: usize = 12;
@@ -86,6 +87,37 @@ impl Animation {
                 match span_of(spans.iter().copied(), frame).filter(|_| key.has(handle)) {
                     Some(span) => key.spans.insert(handle, span),
                     None => key.spans.remove(&handle),
+                };
+            }
+            // A key that comes to others takes their axes on.
+            for span in spans {
+                if self
+                    .keys_in(handle, span)
+                    .any(|(_, key)| key.in_world.contains(&handle))
+                {
+                    self.put_span_into(handle, span, KeySpace::World);
+                }
+            }
+        }
+    }
+
+    /// Chooses the axes in which keys of a sequence stay the same, with all keys of their spans.
+    pub(crate) fn set_space(&mut self, ids: &BTreeSet<KeyId>, space: KeySpace) {
+        for id in ids {
+            let Some(handle) = id.row.handle() else { continue };
+            let frame = self.frame_at(id.time()).round() as usize;
+            if let Some(span) = self.span_at(handle, frame) {
+                self.put_span_into(handle, span, space);
+            }
+        }
+    }
+
+    fn put_span_into(&mut self, handle: HandleId, span: [usize; 2], space: KeySpace) {
+        for key in Arc::make_mut(&mut self.keys) {
+            if key.span(handle) == Some(span) {
+                match space {
+                    KeySpace::World => key.in_world.insert(handle),
+                    KeySpace::Local => key.in_world.remove(&handle),
                 };
             }
         }

@@ -144,8 +144,8 @@ impl Editor {
             Event::Tick => self.workspace.tick(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, beginning } => self.open(model, name, beginning),
-            Event::OpenedSequence { count, shown } => {
-                self.workspace.open_sequence(count, shown);
+            Event::OpenedSequence { count, shown, fps } => {
+                self.workspace.open_sequence(count, shown, fps);
                 self.view.look.timeline = true;
             }
             Event::Frame(frame, shape) => self.workspace.take_frame(frame, shape),

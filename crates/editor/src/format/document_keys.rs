@@ -1,6 +1,6 @@
 //! The keys of a document as those of an edit, and back.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -59,12 +59,15 @@ fn frame_entries(document: &Document, handles: &[HandleId]) -> Vec<KeyEntry> {
             };
             let span = Some(span.map(|end| end as u32));
             let transform = pivoted(placed.stance.transform, Some(placed.pivot));
-            let is_same = |entry: &&mut KeyEntry| entry.frame == Some(frame) && entry.span == span;
+            let space = key.space(*id);
+            let is_same =
+                |entry: &&mut KeyEntry| entry.frame == Some(frame) && entry.span == span && entry.space == space;
             match entries.iter_mut().find(is_same) {
                 Some(entry) => drop(entry.handles.insert(handle.name.clone(), transform)),
                 None => entries.push(KeyEntry {
                     frame: Some(frame),
                     span,
+                    space,
                     ease: key.ease,
                     handles: BTreeMap::from([(handle.name.clone(), transform)]),
                     ..KeyEntry::default()
@@ -137,6 +140,7 @@ pub(super) fn take_keys(document: &mut Document, edit: &EditFile, setup: &Setup)
                 .map(|(handle, curve)| (id(*handle), curve.part(share)))
                 .collect(),
             spans: BTreeMap::new(),
+            in_world: BTreeSet::new(),
             weights: key.weights.map(<[_]>::to_vec).map(|mut weights| {
                 if setup.method.examples_bend() {
                     weights.iter_mut().flatten().for_each(|weight| *weight *= share);

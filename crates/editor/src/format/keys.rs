@@ -12,7 +12,7 @@ use super::transform::Numbers;
 use crate::HandleTransform;
 use crate::document::{HandleCurve, SHARPEN_RANGE};
 use crate::ease::Ease;
-use crate::timeline::KeySpace;
+use crate::key_space::KeySpace;
 
 /// The transforms of some handles at a time, or at a frame of a sequence.
 #[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]

@@ -14,7 +14,8 @@ use super::setup::Setup;
 use crate::HandleTransform;
 use crate::document::{Animation, BodyPath, Document, HandleFilter, HandleId, HandleMix, KeyFrame};
 use crate::ease::Ease;
-use crate::timeline::{HandlePlace, KeySpace};
+use crate::key_space::KeySpace;
+use crate::timeline::HandlePlace;
 use crate::warning::shortened;
 
 /// An edit of a sequence, and its keys, path, filters, footprints and mix for a document.
@@ -31,8 +32,7 @@ impl SequenceEdit {
     ///
     /// # Errors
     /// What [`EditFile::sequence_timeline`], [`EditFile::footprints_of_handles`] and [`EditFile::led_handles`] refuse, and
-    /// what only the command line has: keys in the world's axes, keys at one frame with different eases, the path of a
-    /// handle, two filters of one.
+    /// what only the command line has: keys at one frame with different eases, the path of a handle, two filters of one.
     pub fn of(
         edit: &EditFile,
         setup: &Setup,
@@ -51,12 +51,6 @@ impl SequenceEdit {
                 place: format!("keys[{number}]"),
                 sentence: sentence.to_owned(),
             };
-            if key.space != KeySpace::Local {
-                return Err(refuse(
-                    "stays the same to the world's axes, but the window's keys stay the same to their handles: remove its \
-                     `space`, or use `pliant sequence`",
-                ));
-            }
             let frame = key.frame.unwrap_or_default();
             let is_other = |other: &Ease| *other != key.ease;
             let mut same = edit
@@ -81,6 +75,9 @@ impl SequenceEdit {
                 let pivot = transform.pivot_or(place(frame as usize, handle).carried(pivot, &rest[handle]));
                 own.handles
                     .insert(id, placed(transform.part(edit.strength, pivot), pivot));
+                if key.space == KeySpace::World {
+                    own.in_world.insert(id);
+                }
                 own.spans
                     .extend(key.span.map(|span| (id, span.map(|end| end as usize))));
             }

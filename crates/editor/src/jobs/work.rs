@@ -89,10 +89,11 @@ impl BindInput {
 
     /// The same of the document in another frame of its sequence, in which the same vertices may move.
     pub(super) fn of_document(&self, document: Document) -> Self {
+        let rest = document.applied.then(|| document.rest.as_slice());
         Self {
             model: Arc::clone(&self.model),
+            region: self.region.on(&self.model.surface, rest),
             document,
-            region: self.region.clone(),
             ordering: self.ordering.clone(),
             reusable_factor: None,
             revision: self.revision,

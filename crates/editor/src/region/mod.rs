@@ -123,6 +123,14 @@ impl Region {
         }
     }
 
+    /// The same region on another rest shape, which is so far from the file's `surface`; `None` is the file's own.
+    pub(crate) fn on(&self, surface: &Surface, rest: Option<&[DVec3]>) -> Self {
+        Self {
+            rest_surface: rest.map(|rest| Arc::new(displaced(surface, rest))),
+            ..self.clone()
+        }
+    }
+
     /// The reach of a handle along the surface, in world units; `None` if it has no vertices.
     pub(crate) fn reach_length(&self, handle: HandleId) -> Option<f64> {
         let place = self.handles.iter().position(|id| *id == handle)?;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::span::{HandlePlace, KeySpace, Span, SpanKey};
+use super::span::{HandlePlace, Span, SpanKey};
 use crate::document::{Animation, Handle, HandleTransform, KeyFrame, SplitTransform};
 
 /// The frames of the keys that reach a frame: the places of their handles are needed there.
@@ -30,7 +30,7 @@ pub(crate) fn transform_at(
         Some(SpanKey {
             frame,
             ease: key.ease,
-            space: KeySpace::Local,
+            space: key.space(handle.id),
             place: place_at(frame)?,
             transform: SplitTransform::of(&placed.stance.transform, placed.pivot),
         })

@@ -29,6 +29,6 @@ pub(crate) use self::path::body_motions;
 pub(crate) use self::places::places_of_handles;
 pub(crate) use self::posed::Posed;
 pub(crate) use self::present_key::present_key;
-pub use self::span::{HandlePlace, KeySpace, SequenceTimeline};
+pub use self::span::{HandlePlace, SequenceTimeline};
 pub(crate) use self::span::{Span, SpanKey};
 pub(crate) use self::track::{Key, Track};

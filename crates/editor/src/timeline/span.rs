@@ -7,25 +7,13 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_deform::RigidMotion;
-use serde::{Deserialize, Serialize};
-
 use super::interpolation::between;
 use super::middle::middle_of;
 use crate::document::{HandleTransform, SplitTransform};
 use crate::ease::Ease;
-
-/// The axes in which a key's transform stays the same from frame to frame. Its pivot always rides along with the handle.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase", expecting = "\"local\" or \"world\"")]
-pub enum KeySpace {
-    /// Those of the handle, which turn with it.
-    #[default]
-    Local,
-    /// Those of the world.
-    World,
-}
+use crate::key_space::KeySpace;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use pliant_deform::RigidMotion;
 
 /// The place and the turn of a handle in a frame of a sequence.
 #[derive(Clone, Copy, PartialEq, Debug)]

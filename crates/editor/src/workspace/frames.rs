@@ -15,9 +15,12 @@ use crate::timeline::{HandlePlace, frames_that_reach, places_of_handles, transfo
 const GO_TO_FRAME: &str = "Go to frame";
 
 impl Workspace {
-    /// The opened file is a frame of a sequence of so many frames.
-    pub(crate) fn open_sequence(&mut self, count: usize, shown: Option<usize>) {
+    /// The opened file is a frame of a sequence of so many frames, which is played at `fps` frames a second.
+    pub(crate) fn open_sequence(&mut self, count: usize, shown: Option<usize>, fps: Option<f64>) {
         let animation = self.document.animation().of_sequence(count);
+        let animation = fps
+            .filter(|fps| Animation::FPS_RANGE.contains(fps))
+            .map_or_else(|| animation.clone(), |fps| animation.with_fps(fps));
         let shown = shown.unwrap_or(animation.frame());
         self.document.set_animation(animation.at_frame(0));
         self.history.needs(SavedAs::Project);

@@ -13,6 +13,7 @@ use super::state::Workspace;
 use crate::document::{Animation, Aspect, Document, HandleId, KeyFrame, KeyId, Placed};
 use crate::ease::Ease;
 use crate::jobs::JobKind;
+use crate::key_space::KeySpace;
 use crate::timeline::{Posed, present_key};
 
 /// Sets a key of handles at the shown moment, at their present positions; pins have no keys. Selects it.
@@ -171,6 +172,15 @@ pub(crate) fn set_key_ease(workspace: &mut Workspace, ease: Ease) {
     let selected = workspace.keys.selected.clone();
     workspace.edit_keys("Change ease", |animation| {
         animation.set_ease(&selected, ease);
+        None
+    });
+}
+
+/// Chooses the axes in which the selected keys of a sequence stay the same, with all keys of their spans.
+pub(crate) fn set_key_space(workspace: &mut Workspace, space: KeySpace) {
+    let selected = workspace.keys.selected.clone();
+    workspace.edit_keys("Change axes of keys", |animation| {
+        animation.set_space(&selected, space);
         None
     });
 }

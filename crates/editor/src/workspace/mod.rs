@@ -68,7 +68,7 @@ pub(crate) use handles::{
 };
 pub(crate) use keys::{
     copy_keys, delete_keys, go_to, key_here, key_pose, key_strength, key_weights, move_keys, neighbour_key, paste_keys,
-    set_fps, set_key_ease, set_span, step_frames, stretch_keys,
+    set_fps, set_key_ease, set_key_space, set_span, step_frames, stretch_keys,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

@@ -152,7 +152,11 @@ fn a_project_brings_the_path_back_and_shorter_sequences_keep_what_they_have() {
         let mut again = reopened(&rig, &text);
         let look = again.editor.view().look;
         assert!(look.timeline && look.path);
-        again.send(Event::OpenedSequence { count, shown: None });
+        again.send(Event::OpenedSequence {
+            count,
+            shown: None,
+            fps: None,
+        });
         deliver(&mut again);
         let kept: Vec<usize> = path(&again)
             .iter()

@@ -38,6 +38,7 @@ pub fn give_frames(rig: &mut Rig) {
     rig.send(Event::OpenedSequence {
         count: COUNT,
         shown: None,
+        fps: None,
     });
     deliver(rig);
 }
@@ -380,7 +381,40 @@ fn an_exported_edit_on_the_sequence_again_gives_the_same_frames() {
     let lift = |rig: &Rig| rig.editor.document().handles()[0].affine().translation;
     go_to(&mut rig, 10);
     assert!(lift(&half).length() < 0.7 * lift(&rig).length());
+    // Keys in the world's axes stay so.
+    edit.strength = 1.0;
     edit.keys.iter_mut().for_each(|key| key.space = KeySpace::World);
-    let refused = applied(&rig, &edit, 10).err().unwrap().to_string();
-    assert!(refused.contains("keys[0]") && refused.contains("`space`"), "{refused}");
+    let mut world = applied(&rig, &edit, 25).unwrap();
+    let written = world.editor.edit_file().unwrap();
+    assert!(written.keys.iter().all(|key| key.space == KeySpace::World));
+    let again = applied(&rig, &written, 25).unwrap();
+    assert!(same(&mut world, &again) < 1e-9);
+    go_to(&mut rig, 25);
+    assert!(same(&mut rig, &world) > 1e-3);
+}
+
+#[test]
+fn keys_of_a_span_turn_with_their_handle_or_keep_the_worlds_axes_together() {
+    let (mut rig, id) = keyed();
+    rig.command(Command::SelectKeys(vec![KeyId::new(id, 10.0 / 24.0)]));
+    let spaces = |rig: &Rig| -> Vec<KeySpace> {
+        let keys = rig.editor.document().animation().keys().iter();
+        keys.map(|key| key.space(id)).collect()
+    };
+    go_to(&mut rig, 15);
+    let turning = rig.editor.document().handles()[0].affine();
+    rig.command(Command::SetKeySpace(KeySpace::World));
+    deliver(&mut rig);
+    assert_eq!(spaces(&rig), [KeySpace::World; 2], "a span has one space");
+    assert_ne!(rig.editor.document().handles()[0].affine(), turning);
+    let reopened = crate::project::reopened(&rig, &crate::project::saved(&rig));
+    assert_eq!(spaces(&reopened), [KeySpace::World; 2]);
+    // A new key in the span takes its axes on.
+    rig.command(Command::KeyHere);
+    deliver(&mut rig);
+    assert_eq!(spaces(&rig), [KeySpace::World; 3]);
+    rig.undo();
+    rig.undo();
+    assert_eq!(rig.editor.document().handles()[0].affine(), turning);
+    assert_eq!(spaces(&rig), [KeySpace::Local; 2]);
 }

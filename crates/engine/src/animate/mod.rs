@@ -175,6 +175,7 @@ pub fn stage_animation(
         name: animation.name,
         tolerance: animation.tolerance,
         fps: animation.fps,
+        times: None,
         count,
         moved: MovedVertices::Surface,
         inside_out: &setup.inside_out,

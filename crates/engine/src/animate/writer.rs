@@ -33,6 +33,8 @@ pub(crate) struct AnimationFiles<'a> {
     pub fps: f64,
     /// The number of frames.
     pub count: usize,
+    /// The frames' times in seconds, if the rate does not give them.
+    pub times: Option<&'a [f64]>,
     /// The vertices whose displacements a frame has.
     pub moved: MovedVertices,
     /// The connected parts that are turned inside out.
@@ -222,9 +224,12 @@ impl<'a> AnimationWriter<'a> {
             MovedVertices::Drawn => targets,
             MovedVertices::Surface => targets.iter().map(|target| self.of_drawn(target)).collect(),
         };
-        let times: Vec<f64> = (0..self.files.count)
-            .map(|frame| frame as f64 / self.files.fps)
-            .collect();
+        let steady = || {
+            (0..self.files.count)
+                .map(|frame| frame as f64 / self.files.fps)
+                .collect()
+        };
+        let times: Vec<f64> = self.files.times.map_or_else(steady, <[f64]>::to_vec);
         let animation = MorphAnimation {
             name: self.files.name,
             times: &times,

@@ -10,6 +10,7 @@ mod cache;
 mod folder;
 mod followed;
 mod frame;
+mod frame_times;
 mod held;
 mod kind;
 mod leading;
@@ -53,8 +54,8 @@ pub struct Sequence<'a> {
     pub job: EditJob<'a>,
     /// The mesh whose vertices a point cache moves.
     pub mesh: Option<&'a Path>,
-    /// The frames a second of a glTF's animation.
-    pub fps: f64,
+    /// The frames a second of a glTF's animation; without them every key of the animation is a frame.
+    pub fps: Option<f64>,
     /// The name of the animation in a written glTF.
     pub name: &'a str,
     /// Whether numbered files of a glTF's animation may replace others.
@@ -73,12 +74,15 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
     let kind = Kind::of(job, sequence.mesh)?;
     let (first, _) = job.load(kind.mesh(), watch)?;
     let rest = first.model.rest();
+    let times: Vec<f64>;
     let (source, to, note) = match kind {
         Kind::Folder { folder, output, .. } => (Source::Folder(folder.frames), To::Folder(output), folder.gap),
         Kind::Cache { format, to, .. } => (Source::Cache(Cache::of(job.file, format, &first)?), To::File(to), None),
         Kind::Animation { .. } => {
             let morphs = Morphs::of(&first, sequence.fps, watch)?;
-            let files = sequence.animation_files(&first, morphs.count(), watch)?;
+            morphs.check_steady(job.output)?;
+            times = morphs.times().to_vec();
+            let files = sequence.animation_files(&first, (&times, morphs.fps()), watch)?;
             let choice = morphs.choice();
             (Source::Morphs(morphs), To::Animation(files), choice)
         }
@@ -142,13 +146,14 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
 }
 
 impl Sequence<'_> {
-    /// The animation to write for a glTF of `count` frames.
+    /// The animation to write for a glTF with frames at these times and this rate.
     fn animation_files<'b>(
         &'b self,
         loaded: &'b Loaded,
-        count: usize,
+        (times, fps): (&'b [f64], f64),
         watch: &Watch,
     ) -> Result<AnimationFiles<'b>, EngineError> {
+        let count = times.len();
         loaded.sources().for_each(|(what, path)| watch.note_read(what, path));
         for place in checked_places(self.job.output, count)? {
             self.job.refuse_outputs(&place, None, watch)?;
@@ -160,8 +165,9 @@ impl Sequence<'_> {
             output: self.job.output,
             name: self.name,
             tolerance: MORPH_TOLERANCE,
-            fps: self.fps,
+            fps,
             count,
+            times: Some(times),
             moved: MovedVertices::Drawn,
             inside_out: const { &BTreeSet::new() },
             colours: None,

@@ -28,7 +28,7 @@ pub struct OpenSequence {
     /// The geometry of the mesh.
     rest: Drawn,
     source: Source,
-    fps: f64,
+    fps: Option<f64>,
     note: Option<String>,
 }
 
@@ -78,12 +78,12 @@ impl OpenSequence {
         }
     }
 
-    /// Opens a folder of frames, a point cache, or a glTF's animation of morph targets at `fps` frames a second. No frame
-    /// is read yet.
+    /// Opens a folder of frames, a point cache, or a glTF's animation of morph targets at `fps` frames a second or,
+    /// without it, such that every key of the animation is a frame. No frame is read yet.
     ///
     /// # Errors
     /// A path that is no sequence, or one of another mesh.
-    pub fn of(path: &Path, mesh: Arc<Loaded>, fps: f64, watch: &Watch) -> Result<Self, EngineError> {
+    pub fn of(path: &Path, mesh: Arc<Loaded>, fps: Option<f64>, watch: &Watch) -> Result<Self, EngineError> {
         let (source, note) = match cache_format(path) {
             Some(format) => (Source::Cache(Cache::of(path, format, &mesh)?), None),
             None if is_gltf(path) => {
@@ -132,9 +132,17 @@ impl OpenSequence {
         &self.path
     }
 
-    /// The frames a second at which a glTF's animation was read.
-    pub fn fps(&self) -> f64 {
+    /// The frames a second at which a glTF's animation was to be read; `None` for its own key times.
+    pub fn fps(&self) -> Option<f64> {
         self.fps
+    }
+
+    /// The frames a second of a glTF's animation, which may have more frames at uneven keys; `None` for other sequences.
+    pub fn rate(&self) -> Option<f64> {
+        match &self.source {
+            Source::Morphs(morphs) => Some(morphs.fps()),
+            Source::Folder(_) | Source::Cache(_) => None,
+        }
     }
 
     /// Returns true for a point cache, whose mesh is in another file.

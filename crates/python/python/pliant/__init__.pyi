@@ -304,7 +304,7 @@ def sequence(
     output: File,
     mesh: File | None = None,
     report: File | None = None,
-    fps: float = 24.0,
+    fps: float | None = None,
     replace: bool = False,
     method: Method | None = None,
     memory: int | str | None = None,
@@ -318,7 +318,8 @@ def sequence(
         a glTF an animation as of `animate`.
     :param mesh: the mesh whose vertices a point cache moves.
     :param report: the file for the report.
-    :param fps: the frames a second in which a glTF's animation is edited.
+    :param fps: the frames a second in which a glTF's animation is edited. Without it every key of the animation is a
+        frame: the rate is the lowest one of at least 24 at which that is so.
     :param replace: whether numbered files of a glTF's animation may replace others.
     :param method: the method instead of the edit's, as in `apply`.
     :param memory: the most memory for the binding of a frame, as in `apply`.

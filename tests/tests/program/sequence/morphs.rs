@@ -115,7 +115,7 @@ fn every_kind_of_sequence_opens_with_the_same_shapes_frame_by_frame() {
     let watch = Watch::default();
     let open_sequence = |file: &str, mesh: &str| {
         let mesh = Arc::new(open(&take.folder.at(mesh)));
-        OpenSequence::of(&take.folder.at(file), mesh, 12.0, &watch).unwrap()
+        OpenSequence::of(&take.folder.at(file), mesh, Some(12.0), &watch).unwrap()
     };
     let folder = open_sequence("frames", "frames/wave-0000.off");
     let others = [

@@ -137,6 +137,7 @@ impl Application {
             ..
         } = opened;
         let is_file = path.is_some() || project.is_some();
+        let is_project = project.is_some() || recovered.is_some();
         let place = sequence.as_ref().map(|(sequence, _)| sequence.path().to_owned());
         if let Some(path) = project.or(place).or(path).filter(|_| recovered.is_none()) {
             self.settings.change(|settings| settings.remember(&path));
@@ -162,6 +163,7 @@ impl Application {
             self.editor.handle(Event::OpenedSequence {
                 count: sequence.count(),
                 shown,
+                fps: sequence.rate().filter(|_| !is_project),
             });
         }
         self.show_vertex_colours(has_vertex_colours);

@@ -72,6 +72,10 @@ fn assembled(
         None => project,
     };
     let project = project.of_sequence(sequence.map(|place| relative(place, files::folder_of(path))));
+    let project = match mesh.has_own_key_times {
+        true => project.with_own_key_times(),
+        false => project,
+    };
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
     let (kept, staged_mesh) = beside.unzip();
     Ok(StagedProject {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pliant_assets::CREATURE;
 use pliant_engine::files::{KnownFiles, Stamp, is_same};
 use pliant_engine::watch::Watch;
-use pliant_engine::{EngineError, Loaded};
+use pliant_engine::{EngineError, Loaded, OpenSequence};
 use pliant_mesh::WeldOptions;
 
 use crate::files::names::SAMPLE_NAME;
@@ -39,6 +39,8 @@ pub struct RestMesh {
     pub source: MeshSource,
     /// The place of the sequence of whose frames it is one.
     pub sequence: Option<PathBuf>,
+    /// True if that is a glTF's animation of which every key is a frame.
+    pub has_own_key_times: bool,
     /// The files that contain it, as they were then.
     copies: KnownFiles,
 }
@@ -54,14 +56,20 @@ impl RestMesh {
             loaded,
             source,
             sequence: None,
+            has_own_key_times: false,
             copies,
         }
     }
 
-    /// The same, a frame of the sequence at this place.
+    /// The same, a frame of this sequence.
     #[must_use]
-    pub fn of_sequence(self, sequence: Option<PathBuf>) -> Self {
-        Self { sequence, ..self }
+    pub fn of_sequence(self, sequence: Option<&OpenSequence>) -> Self {
+        let has_own = |sequence: &OpenSequence| sequence.rate().is_some() && sequence.fps().is_none();
+        Self {
+            sequence: sequence.map(|sequence| sequence.path().to_owned()),
+            has_own_key_times: sequence.is_some_and(has_own),
+            ..self
+        }
     }
 
     /// Notes that a file contains it.

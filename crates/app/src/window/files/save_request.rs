@@ -88,8 +88,8 @@ pub struct FramesToWrite {
     pub sequence: PathBuf,
     /// The mesh of a point cache.
     pub cached_mesh: Option<PathBuf>,
-    /// The frames a second of a glTF.
-    pub fps: f64,
+    /// The frames a second of a glTF; `None` for its own key times.
+    pub fps: Option<f64>,
     /// Whether numbered files may replace others.
     pub existing: ExistingFrames,
     /// The stage of the work.

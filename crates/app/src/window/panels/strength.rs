@@ -27,7 +27,9 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             )
             .on_disabled_hover_text(obstacle.as_deref().unwrap_or_default());
         commands.adjust(&slider, || Command::SetStrength(percent / 100.0));
+        let is_sequence = editor.document().animation().frames().is_some();
         if editor.view().look.timeline
+            && !is_sequence
             && icon_choice(ui, editor, &Command::KeyStrength, false, Glyph::DiamondPlus, None)
         {
             commands.push(Command::KeyStrength);

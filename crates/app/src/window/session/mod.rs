@@ -234,7 +234,7 @@ impl Session {
             morph_targets: opened.loaded.scene.morph_targets(),
             drawing: Arc::clone(&opened.drawing),
             mesh: RestMesh::new(Arc::clone(&opened.loaded), opened.source.clone())
-                .of_sequence(opened.sequence.as_ref().map(|(sequence, _)| sequence.path().to_owned())),
+                .of_sequence(opened.sequence.as_ref().map(|(sequence, _)| &**sequence)),
             project: opened.project.clone(),
             sequence: opened.sequence.as_ref().map(|(sequence, _)| Arc::clone(sequence)),
             in_file: match &opened.path {

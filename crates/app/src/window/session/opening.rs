@@ -142,6 +142,7 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
     let (mut unsaved, mut done) = (None, None);
     let (mut project, mut recovered) = (None, None);
     let mut sequence: Option<(PathBuf, Option<&Path>)> = None;
+    let mut read_at = None;
     let (loaded, path, source) = match asked {
         Source::Sample => (load_sample(&weld, watch)?, None, MeshSource::Sample),
         Source::File(path) if !pliant_engine::is_project(path) => (
@@ -205,6 +206,8 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
             let opened = project_file::read(path, watch)?;
             stamps.push((path.clone(), opened.stamp));
             sequence = opened.sequence.map(|place| (place, None));
+            // Projects of earlier versions have keys at frames of this rate.
+            read_at = (!opened.project.has_own_key_times()).then(|| Animation::default().fps());
             match asked {
                 Source::Recovered(_) => {
                     recovered = Some(path.clone());
@@ -238,7 +241,7 @@ pub(super) fn open(asked: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Model
             None
         }
         Some((path, chosen)) => {
-            let sequence = OpenSequence::of(&path, Arc::clone(&loaded), Animation::default().fps(), watch)?;
+            let sequence = OpenSequence::of(&path, Arc::clone(&loaded), read_at, watch)?;
             notes.extend(sequence.note().map(str::to_owned));
             let shown = chosen.and_then(|file| sequence.frame_of(file));
             if let (Some(Beginning::Edit(edit)), Source::Edited { edit: path, .. }) = (&beginning, asked) {

@@ -53,6 +53,9 @@ struct StoredKey {
     /// The first and the last frame of each key's span in a sequence, by the handles' numbers.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     spans: BTreeMap<u32, [usize; 2]>,
+    /// The handles whose keys in a sequence stay the same to the world's axes, by their numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    in_world: Vec<u32>,
     /// The weights of the examples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<Vec<Option<f64>>>,
@@ -77,6 +80,7 @@ impl StoredAnimation {
                 .map(|(id, curve)| (u32::from(id.0), curve.clone()))
                 .collect(),
             spans: key.spans.iter().map(|(id, span)| (u32::from(id.0), *span)).collect(),
+            in_world: key.in_world.iter().map(|id| u32::from(id.0)).collect(),
             weights: key.weights.clone(),
             strength: key.strength,
         };
@@ -144,6 +148,11 @@ impl StoredAnimation {
                 .spans
                 .iter()
                 .filter_map(|(id, span)| Some((HandleId(u16::try_from(*id).ok()?), *span)))
+                .collect(),
+            in_world: key
+                .in_world
+                .iter()
+                .filter_map(|id| Some(HandleId(u16::try_from(*id).ok()?)))
                 .collect(),
             weights: key.weights.clone(),
             strength: key.strength,

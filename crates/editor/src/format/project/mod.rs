@@ -124,6 +124,9 @@ pub struct Project {
     /// The sequence of whose frames the mesh is one, by its path, as the mesh's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     sequence: Option<String>,
+    /// True if every key of a glTF's animation is a frame; if not, there are 24 frames a second.
+    #[serde(default, skip_serializing_if = "is_false")]
+    own_key_times: bool,
     /// The fluid on the surface, and the forces in its flow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     flow: Option<StoredFlow>,
@@ -174,6 +177,11 @@ pub fn geometry_hash(model: &Model) -> String {
         hash.update(vertex.0.to_le_bytes());
     }
     hexadecimal(hash)
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 impl Project {
@@ -274,6 +282,7 @@ impl Project {
             work_pose: None,
             animation: StoredAnimation::of(document.animation()),
             sequence: None,
+            own_key_times: false,
             flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
             mesh_colours: None,
             camera: camera.map(StoredCamera::of),
@@ -295,6 +304,21 @@ impl Project {
     /// The path of the sequence of whose frames the mesh is one, as the mesh's own.
     pub fn sequence(&self) -> Option<&str> {
         self.sequence.as_deref()
+    }
+
+    /// Returns true if every key of the glTF's animation, which is the sequence, is a frame; if not, there are 24 frames a
+    /// second.
+    pub fn has_own_key_times(&self) -> bool {
+        self.own_key_times
+    }
+
+    /// The same of a glTF's animation of which every key is a frame.
+    #[must_use]
+    pub fn with_own_key_times(self) -> Self {
+        Self {
+            own_key_times: true,
+            ..self
+        }
     }
 
     /// The other sequence that leads handles, by its path.

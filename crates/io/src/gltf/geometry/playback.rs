@@ -18,6 +18,8 @@ pub struct MorphPlayback {
     name: String,
     others: usize,
     duration: f64,
+    /// Ascending.
+    key_times: Vec<f64>,
     parts: Vec<Part>,
 }
 
@@ -45,6 +47,11 @@ impl MorphPlayback {
     /// The time of its last key, in seconds.
     pub fn duration(&self) -> f64 {
         self.duration
+    }
+
+    /// The times of all its keys, in seconds, ascending.
+    pub fn key_times(&self) -> &[f64] {
+        &self.key_times
     }
 
     /// Adds the displacements since rest at a time in seconds to the positions of the drawn vertices.
@@ -96,12 +103,23 @@ pub(crate) fn playback(
             last = Some(MorphPlayback {
                 name: document.name(at),
                 others: last.map_or(0, |last| last.others + 1),
+                key_times: key_times(&tracks),
                 duration: tracks.iter().map(|(_, track)| track.end()).fold(0.0, f64::max),
                 parts,
             });
         }
     }
     Ok(last)
+}
+
+fn key_times(tracks: &[(usize, WeightTrack)]) -> Vec<f64> {
+    let mut times: Vec<f64> = tracks
+        .iter()
+        .flat_map(|(_, track)| track.times().iter().copied())
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 fn part(

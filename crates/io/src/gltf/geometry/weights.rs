@@ -52,6 +52,11 @@ impl WeightTrack {
         })
     }
 
+    /// The times of its keys, in seconds.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
     /// The time of the last key, in seconds.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or_default()

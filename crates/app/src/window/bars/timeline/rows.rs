@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, Stroke, StrokeKind, vec2};
-use pliant_editor::{Command, Ease, Editor, KeyFrame, KeyId};
+use pliant_editor::{Command, Ease, Editor, KeyFrame, KeyId, KeySpace};
 
 use super::path_row;
 use super::row::{Row, rows_of};
@@ -215,6 +215,8 @@ fn choose_in_box(ui: &egui::Ui, ground: &egui::Response, marks: &[Mark<'_>], edi
 /// The menu over keys and beside them.
 fn menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let eases = [Ease::Smooth, Ease::Linear, Ease::Hold].map(Command::SetKeyEase);
+    let is_sequence = editor.document().animation().frames().is_some();
+    let spaces = [KeySpace::Local, KeySpace::World].map(Command::SetKeySpace);
     let groups = [
         vec![
             Command::KeyHere,
@@ -229,9 +231,10 @@ fn menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Command::SelectAllKeys,
         ],
         eases.to_vec(),
+        spaces.into_iter().filter(|_| is_sequence).collect(),
     ];
     for (number, group) in groups.into_iter().enumerate() {
-        if number > 0 {
+        if number > 0 && !group.is_empty() {
             ui.separator();
         }
         for command in group {
