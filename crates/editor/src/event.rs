@@ -65,7 +65,7 @@ pub enum Event {
     Adjust(Command),
     /// The widget was let go.
     Adjusted,
-    /// The window is about to draw a frame while an animation plays.
+    /// The window is about to draw a frame while an animation plays or events that have waited are handled.
     Tick,
     /// A job given to the executor has ended, or has an intermediate result.
     JobDone(JobDone),

@@ -101,6 +101,8 @@ pub struct SceneView<'a> {
     pub selected_keys: &'a BTreeSet<KeyId>,
     /// True while the animation plays.
     pub is_animating: bool,
+    /// True while events that have waited for a job are handled, some of them in each frame.
+    pub is_catching_up: bool,
     /// The frame of a sequence that must be read next ([`Event::Frame`](crate::Event::Frame)); `None` if none is
     /// awaited.
     pub wanted_frame: Option<usize>,

@@ -1,6 +1,7 @@
 //! The program without a window: its parts, and the single function through which everything changes.
 
 mod queries;
+mod waiting;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -75,17 +76,8 @@ impl Editor {
             self.dispatch(event);
         }
         self.conclude();
-        let jobs = &self.workspace.jobs;
-        let answers = picked || jobs.is_picking_current() || !jobs.is_busy(JobKind::Pick);
-        if !self.waiting.is_empty() && answers {
-            for event in std::mem::take(&mut self.waiting) {
-                if self.is_looking() {
-                    self.waiting.push_back(event);
-                } else {
-                    self.dispatch(event);
-                    self.conclude();
-                }
-            }
+        if picked || self.is_catching_up() {
+            self.catch_up();
         }
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
             (gesture.lit(), gesture.shapes(&self.view))
@@ -457,35 +449,6 @@ impl Editor {
         open(&mut self.workspace);
         self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }), up);
         frame_all(&self.workspace, &mut self.view);
-    }
-
-    fn is_looking(&self) -> bool {
-        self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
-    }
-
-    /// Returns true if the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or for
-    /// events that wait already.
-    fn must_wait(&mut self, event: &Event) -> bool {
-        let waits = !self.waiting.is_empty() || self.is_looking();
-        match event {
-            Event::Key(Key::Escape, _) | Event::PointerLeft => {
-                self.waiting.clear();
-                false
-            }
-            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => waits,
-            Event::PointerPressed(pointer, button) => {
-                let asks = *button == Button::Primary && !pointer.modifiers.alt && self.gesture.is_none();
-                let jobs = &self.workspace.jobs;
-                let is_late = asks && jobs.is_busy(JobKind::Pick) && !jobs.is_picking_current();
-                waits
-                    || (is_late
-                        && self
-                            .overlay
-                            .grabbed(pointer.position_px, &self.view, &self.settings)
-                            .is_none())
-            }
-            _ => false,
-        }
     }
 }
 

@@ -79,6 +79,7 @@ impl Editor {
             skins: workspace.jobs.skins(),
             selected_keys: workspace.keys.selected(),
             is_animating: workspace.keys.is_playing(),
+            is_catching_up: self.is_catching_up(),
             wanted_frame: workspace.frame_to_read(),
             wanted_mix: workspace.mix_to_read(),
             wants_following: gesture.is_none() && workspace.wants_following(&view.look),

@@ -1,9 +1,13 @@
 //! Jobs that end late, twice or never: the results that are kept, and those that are dropped.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
-use crate::rig::{CENTRE_PX, Rig};
+use std::cell::Cell;
+
+use crate::rig::{CENTRE_PX, Rig, weld};
 use glam::DVec2;
-use pliant_editor::{Command, Event, GizmoPart, JobKind, Key, Paint, StrokeShape, ToolMode, Unfinished};
+use pliant_editor::{
+    Command, Event, Executor, GizmoPart, InlineExecutor, Job, JobKind, Key, Paint, StrokeShape, ToolMode, Unfinished,
+};
 use pliant_mesh::shapes;
 
 /// A sphere for bending by this method.
@@ -278,6 +282,50 @@ fn a_click_waits_for_its_answer() {
         "the stroke was made when the pointer could be answered"
     );
     assert!(rig.editor.view().undo.is_some());
+}
+
+/// An executor for which every look at the clock is a second later.
+struct Slow(InlineExecutor);
+
+impl Executor for Slow {
+    fn start(&mut self, job: Job) {
+        self.0.start(job);
+    }
+
+    fn clock_ms(&self) -> fn() -> f64 {
+        thread_local! {
+            static NOW_MS: Cell<f64> = const { Cell::new(0.0) };
+        }
+        || NOW_MS.replace(NOW_MS.get() + 1000.0)
+    }
+}
+
+#[test]
+fn a_stroke_that_has_waited_is_made_frame_by_frame_and_is_the_same() {
+    let way_px: Vec<DVec2> = (0..9)
+        .map(|k| CENTRE_PX + DVec2::new(9.0, 5.0) * f64::from(k))
+        .collect();
+    let mut at_once = Rig::open(shapes::icosphere(4));
+    at_once.paint(ToolMode::PaintHandle, &way_px);
+    at_once.drain();
+
+    let jobs = InlineExecutor::new();
+    let mut slow = Rig::open_on(Box::new(Slow(jobs.clone())), jobs, weld(shapes::icosphere(4)));
+    slow.paint(ToolMode::PaintHandle, &way_px);
+    slow.run(JobKind::Pick);
+    let mut frames = 0;
+    while slow.editor.view().is_catching_up {
+        // The pointer has left the window in the meantime.
+        slow.send(Event::PointerLeft);
+        slow.send(Event::Tick);
+        frames += 1;
+    }
+    assert!(
+        2 * frames >= way_px.len(),
+        "every message takes one more: {frames} frames"
+    );
+    slow.drain();
+    assert!(slow.fingerprint() == at_once.fingerprint());
 }
 
 /// A lasso around this point of the view, let go.

@@ -18,7 +18,7 @@ use crate::window::session::OpenFile;
 use crate::window::threads::interface_pool;
 use crate::window::widgets::outbox::Outbox;
 
-/// The time between two looks whether the next frame of an animation is due.
+/// The time between two looks whether the next frame of an animation is due, or events wait no longer.
 const TICK: Duration = Duration::from_millis(4);
 
 impl eframe::App for Application {
@@ -38,7 +38,8 @@ impl eframe::App for Application {
         self.file_shortcuts(&context);
         self.close_by_escape(&context);
 
-        if self.editor.view().is_animating {
+        let view = self.editor.view();
+        if view.is_animating || view.is_catching_up {
             self.editor.handle(Event::Tick);
             // Often enough for the next frame to come in time.
             context.request_repaint_after(TICK);

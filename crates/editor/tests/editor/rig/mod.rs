@@ -10,8 +10,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use pliant_deform::{Bound, Constraints, Loose, Method, Problem, Role};
 use pliant_editor::{
-    Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
-    Paint, Pointer, Tips, ToolMode,
+    Access, Button, Command, Document, Editor, Event, Executor, GizmoPart, Handle, InlineExecutor, JobKind, Key,
+    Modifiers, Paint, Pointer, Tips, ToolMode,
 };
 use pliant_mesh::{Cancel, Drawn, Model, Object, Progress, WeldOptions};
 
@@ -129,7 +129,12 @@ impl Rig {
     }
 
     fn open_by(jobs: InlineExecutor, model: Arc<Model>) -> Self {
-        let mut editor = Editor::new(Box::new(jobs.clone()));
+        Self::open_on(Box::new(jobs.clone()), jobs, model)
+    }
+
+    /// A program with this mesh, whose executor leaves its jobs in this list.
+    pub fn open_on(executor: Box<dyn Executor>, jobs: InlineExecutor, model: Arc<Model>) -> Self {
+        let mut editor = Editor::new(executor);
         editor.handle(Event::Viewport { size_px: VIEWPORT_PX });
         editor.handle(Event::Opened {
             model: Arc::clone(&model),
