@@ -84,6 +84,10 @@ const LIMBS: &[Limb] = &[
     brush("Spot, foreleg", "spot.obj", NamedView::Left, [0.41, 0.15], 0.1, [[0.62, 1.0], [0.0, 1.0]]),
     brush("Spot, hind leg", "spot.obj", NamedView::Left, [0.84, 0.15], 0.1, [[0.0, 0.62], [0.0, 1.0]]),
     brush("Spot, ear", "spot.obj", NamedView::Front, [0.08, 0.84], 0.05, RIGHT),
+    brush("Nefertiti, brow", "nefertiti-lowres.obj", NamedView::Front, [0.653, 0.578], 0.025, [[0.0, 1.0], [0.0, 0.45]]),
+    brush("Nefertiti, nose", "nefertiti-lowres.obj", NamedView::Front, [0.51, 0.494], 0.03, [[0.0, 1.0], [0.62, 1.0]]),
+    brush("Demosthenes, nose", "demosthenes-low-res.obj", NamedView::Front, [0.53, 0.589], 0.035, [[0.0, 1.0], [0.0, 0.5]]),
+    brush("Suzanne, ear", "suzanne.obj", NamedView::Front, [0.083, 0.59], 0.1, [[0.3, 1.0], [0.0, 1.0]]),
     brush("bunny, ear", "stanford-bunny.obj", NamedView::Front, [0.3, 0.85], 0.06, [[0.0, 1.0], [0.0, 0.5]]),
 ];
 

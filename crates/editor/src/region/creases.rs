@@ -18,14 +18,15 @@ const CREASE_RADII: f64 = 3.0;
 /// The length over which normals are smoothed, in radii of the handle.
 const SMOOTH_RADII: f64 = 0.15;
 
-/// So near to the handle, in radii, creases do not count: a handle may end in one, and still needs room to bend.
-const FREE_RADII: f64 = 0.5;
+/// Up to this distance from the handle, in radii, creases count less, and at its edge not at all: a handle may end in one,
+/// and still needs room to bend.
+const FREE_RADII: f64 = 1.0;
 
 /// A handle of at least so many times the scale of its limb goes all along it, as around a spine.
 const LONG_SCALES: f64 = 2.0;
 
 /// Beyond such a handle, ways keep their length over so many times that scale, so that the body has room to bend.
-const ROOM_SCALES: f64 = 0.5;
+const ROOM_SCALES: f64 = 1.0;
 
 /// The search for the vertices that a handle reaches, with memory that is kept between handles.
 #[derive(Default)]
@@ -127,9 +128,8 @@ impl CreaseSearch {
         );
         stretch.resize(surface.positions.len(), 1.0);
         for (&(vertex, distance), concavity) in plain.iter().zip(concavities) {
-            if distance >= FREE_RADII * radius {
-                stretch[vertex.index()] += CREASE_RADII * radius * concavity;
-            }
+            let weight = (distance / (FREE_RADII * radius)).min(1.0);
+            stretch[vertex.index()] += weight * CREASE_RADII * radius * concavity;
         }
     }
 
@@ -219,6 +219,27 @@ mod tests {
 
     fn near(reached: &[(SurfaceVertex, f64)]) -> Vec<SurfaceVertex> {
         reached.iter().map(|&(vertex, _)| vertex).collect()
+    }
+
+    #[test]
+    fn a_crease_near_the_handle_holds_its_reach_back() {
+        let model = shapes::model(shapes::half_ball(90, 1.0));
+        // It ends 0.3 radii before the crease.
+        let radius = 2.0 * HANDLE;
+        let height = BALL * (0.3 * radius / BALL).sin();
+        let all = (0..).map(SurfaceVertex).zip(&model.surface.positions);
+        let members = all.filter(|(_, p)| p.z > height).map(|(v, _)| (v, 0.0));
+        let members: Vec<(SurfaceVertex, f64)> = members.collect();
+        let (surface, topology, most) = (&model.surface, &model.topology, 1.5 * radius);
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let beyond = |reached: &[(SurfaceVertex, f64)]| {
+            let away = reached.iter().map(|&(v, _)| position(v).truncate().length());
+            away.fold(0.0, f64::max) - BALL
+        };
+        let (mut search, mut creases) = (DistanceSearch::default(), CreaseSearch::default());
+        let plain = beyond(search.within(&surface.triangles, topology, position, &members, most));
+        let held = beyond(creases.within(surface, topology, &members, radius, most));
+        assert!(held < 0.5 * plain, "{held} of {plain}");
     }
 
     #[test]
