@@ -152,6 +152,13 @@ fn ghosts_are_drawn_and_it_plays_until_it_is_paused() {
 fn the_animation_is_exported_as_the_command_line_writes_it() {
     let Some(mut session) = keyed() else { return };
     command(&mut session, Command::SetFps(8.0));
+    // The strength has a row and a key of its own.
+    command(&mut session, Command::SetStrength(0.5));
+    click(&mut session, "Key strength");
+    session.settle();
+    session
+        .harness
+        .get_by_role_and_label(Role::CheckBox, "Key of the strength, 50 %, at 0.500 s");
     let folder = Folder::new();
     let (cache, edit) = (
         folder.at("wave.pc2"),

@@ -2,7 +2,8 @@
 
 use crate::document::Animation;
 
-/// The vertices of all ghosts together: about 600 MB of shapes and of buffers on the device.
+/// The vertices of all ghosts together. Each takes about 130 bytes, of shapes and of buffers on the device (measured on a
+/// surface of 43,000 vertices); its picture, which has the view's size, comes on top.
 const MOST_VERTICES: usize = 4_000_000;
 
 /// The ghosts before and after the shown moment of an animation.

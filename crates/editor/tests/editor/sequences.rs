@@ -389,13 +389,15 @@ fn an_exported_edit_on_the_sequence_again_gives_the_same_frames() {
     assert!(written.keys.iter().all(|key| key.space == KeySpace::World));
     let again = applied(&rig, &written, 25).unwrap();
     assert!(same(&mut world, &again) < 1e-9);
-    go_to(&mut rig, 25);
-    assert!(same(&mut rig, &world) > 1e-3);
 }
 
 #[test]
 fn keys_of_a_span_turn_with_their_handle_or_keep_the_worlds_axes_together() {
     let (mut rig, id) = keyed();
+    // A handle of one vertex does not turn.
+    rig.command(Command::SetTool(ToolMode::PaintHandle));
+    rig.swipe(&[-60.0, 0.0, 60.0].map(|x| CENTRE_PX + DVec2::new(x, 40.0)));
+    rig.drain();
     rig.command(Command::SelectKeys(vec![KeyId::new(id, 10.0 / 24.0)]));
     let spaces = |rig: &Rig| -> Vec<KeySpace> {
         let keys = rig.editor.document().animation().keys().iter();

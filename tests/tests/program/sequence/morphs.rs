@@ -142,3 +142,27 @@ fn every_kind_of_sequence_opens_with_the_same_shapes_frame_by_frame() {
     assert!(of_file("wave.glb").unwrap().contains("morph targets"));
     assert_eq!(of_file("in/walk-0.off"), None);
 }
+
+/// The key times of the last animation of a glTF, as they are stored.
+fn key_times(take: &Take, name: &str) -> Vec<f64> {
+    let file = open(&take.folder.at(name));
+    let playback = file.scene.morph_playback(name, &pliant_mesh::Cancel::new()).unwrap();
+    playback.unwrap().key_times().to_vec()
+}
+
+#[test]
+fn a_clip_comes_back_with_its_own_times() {
+    let take = waving();
+    let mesh = take.folder.at("in/walk-0.off");
+    of(&take, "animate", mesh, "wave.json", "wave30.glb", &["--fps", "30"]).done();
+    let own = key_times(&take, "wave30.glb");
+    assert_eq!(own.len(), 16);
+    let keys = || json!([key(3, [1, 5], turned(0.8, [0.2, 0.0, 0.1]))]);
+    edited(&take, "wave30.glb", keys(), "lifted30.glb", &[]).done();
+    assert_eq!(key_times(&take, "lifted30.glb"), own, "to the bit");
+    // Keys that are frames at 24 a second keep that rate.
+    edited(&take, "wave.glb", keys(), "lifted24.glb", &[]).done();
+    assert_eq!(key_times(&take, "lifted24.glb").len(), 13);
+    let own = key_times(&take, "wave.glb");
+    assert!(own.iter().all(|time| key_times(&take, "lifted24.glb").contains(time)));
+}
