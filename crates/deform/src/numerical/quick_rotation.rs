@@ -65,7 +65,7 @@ fn cofactor(n: &[[f64; 4]; 4], row: usize, column: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::numerical::rigid_fit::best_rotation;
-    use glam::DVec3;
+    use crate::numerical::rotation::tests::STRETCHES;
 
     #[test]
     fn it_is_the_largest_eigenvector_also_of_flat_and_mirrored_matrices() {
@@ -73,13 +73,7 @@ mod tests {
             let k = f64::from(k);
             DQuat::from_euler(glam::EulerRot::XYZ, 0.7 * k, 1.3 * k, 2.9 * k)
         };
-        for stretches in [
-            DVec3::new(3.0, 2.0, 1.0),
-            DVec3::new(1.0, 1.0, 0.0),
-            DVec3::new(3.0, 1.0, -0.5),
-            DVec3::splat(1e-9),
-            DVec3::new(5e8, 1e8, -9e7),
-        ] {
+        for stretches in STRETCHES {
             for k in 0..50 {
                 let s = DMat3::from_quat(turn(k)) * DMat3::from_diagonal(stretches) * DMat3::from_quat(turn(k + 7));
                 let (found, meant) = (quick_rotation(&s).unwrap(), best_rotation(&s.transpose()));

@@ -104,9 +104,18 @@ fn newton(s: &DMat3, start: DQuat, last_rad: f64) -> Option<DQuat> {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
-mod tests {
+pub(crate) mod tests {
     use super::fit;
     use glam::{DMat3, DQuat, DVec3};
+
+    /// Singular values, the last one negative in a mirror.
+    pub(crate) const STRETCHES: [DVec3; 5] = [
+        DVec3::new(3.0, 2.0, 1.0),
+        DVec3::new(1.0, 1.0, 0.0),
+        DVec3::new(3.0, 1.0, -0.5),
+        DVec3::splat(1e-9),
+        DVec3::new(5e8, 1e8, -9e7),
+    ];
 
     fn axis(i: u32) -> DVec3 {
         DVec3::new(
@@ -120,13 +129,7 @@ mod tests {
     /// R diag(σ) Vᵀ for rotations R and V: its best rotation is R Vᵀ while each pair of σ has a positive sum.
     #[test]
     fn the_rotation_is_found_from_any_start_also_in_flat_and_reflected_cells() {
-        for stretches in [
-            DVec3::new(3.0, 2.0, 1.0),
-            DVec3::new(1.0, 1.0, 0.0),
-            DVec3::new(3.0, 1.0, -0.5),
-            DVec3::splat(1e-9),
-            DVec3::new(5e8, 1e8, -9e7),
-        ] {
+        for stretches in STRETCHES {
             for i in 0..60 {
                 let rotation = DQuat::from_axis_angle(axis(i), 0.1 * f64::from(i));
                 let v = DMat3::from_quat(DQuat::from_axis_angle(axis(i + 17), 2.0));
