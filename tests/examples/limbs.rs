@@ -239,7 +239,6 @@ impl Drawn {
         let at = |position_px: DVec2| Pointer {
             position_px,
             modifiers: Modifiers::NONE,
-            ..Pointer::default()
         };
         self.editor.handle(Event::PointerMoved(at(way[0])));
         self.editor.handle(Event::PointerPressed(at(way[0]), Button::Primary));
