@@ -55,7 +55,8 @@ impl FrameTimes {
         let mut rates = std::iter::once(FPS).chain(COMMON).chain(whole);
         let fitting = rates.find(|fps| keys.iter().all(|key| is_frame(*key, *fps)));
         let fps = fitting.unwrap_or(FPS);
-        let mut own = Self::steady(duration, fps)?;
+        // In single precision the last key may be before its frame.
+        let mut own = Self::steady(duration + near(duration * fps) / fps, fps)?;
         let mut uneven = Vec::new();
         for key in keys {
             let frame = (key * fps).round() as usize;
@@ -76,8 +77,13 @@ impl FrameTimes {
 /// Returns true if a time is that of a frame.
 fn is_frame(time: f64, fps: f64) -> bool {
     let frame = time * fps;
-    // The last place of single precision, for animations of hours.
-    (frame - frame.round()).abs() <= NEAR + frame * 1e-7
+    (frame - frame.round()).abs() <= near(frame)
+}
+
+/// The distance, in frames, up to which a time is that of a frame: also the last place of single precision, for animations
+/// of hours.
+fn near(frame: f64) -> f64 {
+    NEAR + frame * 1e-7
 }
 
 #[cfg(test)]
