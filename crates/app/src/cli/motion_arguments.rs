@@ -57,7 +57,7 @@ pub(crate) struct SequenceArguments {
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
     /// The frames a second in which a glTF's animation is edited. Without it every key of the animation is a frame: the
-    /// rate is the lowest one of at least 24 at which that is so, and keys at uneven times are frames beside those at 24
+    /// rate is the lowest usual one from 24 on at which that is so, and keys at uneven times are frames beside those at 24
     #[arg(long, value_name = "F", value_parser = frame_rate)]
     pub fps: Option<f64>,
     /// Allow numbered files of a glTF's animation to replace existing ones

@@ -1,8 +1,8 @@
 //! The times of the frames of an animation that has key times of its own.
 //!
 //! An edit spreads from key frames over the frames beside them, so there are frames between far keys, too. The rate is the
-//! lowest one of at least 24 frames a second at which every key of the animation is a frame. An animation whose keys fit
-//! no rate has frames at 24 a second, and one more at each of its keys.
+//! lowest usual one of at least 24 frames a second at which every key of the animation is a frame. An animation whose keys
+//! fit none has frames at 24 a second, and one more at each of its keys.
 
 use crate::EngineError;
 use crate::animate::frame_count;
@@ -10,12 +10,23 @@ use crate::animate::frame_count;
 /// The frames a second of an animation whose keys are frames of it.
 const FPS: f64 = 24.0;
 
-/// The rates that are tried after [`FPS`] and before the whole numbers up to [`MOST_FPS`], by how common they are: cameras'
-/// rates first, then those of television.
-const COMMON: [f64; 5] = [30.0, 25.0, 24_000.0 / 1001.0, 30_000.0 / 1001.0, 60_000.0 / 1001.0];
-
-/// The highest rate that is tried.
-const MOST_FPS: u32 = 240;
+/// The usual rates: those of films, of television, of screens and of motion capture. The lowest one that fits is taken.
+const RATES: [f64; 14] = [
+    FPS,
+    24_000.0 / 1001.0,
+    25.0,
+    30_000.0 / 1001.0,
+    30.0,
+    48.0,
+    50.0,
+    60_000.0 / 1001.0,
+    60.0,
+    72.0,
+    90.0,
+    100.0,
+    120.0,
+    240.0,
+];
 
 /// Times that are closer than this share of a frame are one: files have single precision.
 const NEAR: f64 = 1e-3;
@@ -51,11 +62,11 @@ impl FrameTimes {
     /// Too many frames.
     pub(super) fn of_keys(keys: &[f64]) -> Result<Self, EngineError> {
         let duration = keys.last().copied().unwrap_or_default();
-        let whole = (FPS as u32 + 1..=MOST_FPS).map(f64::from);
-        let mut rates = std::iter::once(FPS).chain(COMMON).chain(whole);
+        let mut rates = RATES.into_iter();
         let fitting = rates.find(|fps| keys.iter().all(|key| is_frame(*key, *fps)));
         let fps = fitting.unwrap_or(FPS);
-        let mut own = Self::steady(duration, fps)?;
+        // In single precision the last key may be before its frame.
+        let mut own = Self::steady(duration + near(duration * fps) / fps, fps)?;
         let mut uneven = Vec::new();
         for key in keys {
             let frame = (key * fps).round() as usize;
@@ -76,8 +87,13 @@ impl FrameTimes {
 /// Returns true if a time is that of a frame.
 fn is_frame(time: f64, fps: f64) -> bool {
     let frame = time * fps;
-    // The last place of single precision, for animations of hours.
-    (frame - frame.round()).abs() <= NEAR + frame * 1e-7
+    (frame - frame.round()).abs() <= near(frame)
+}
+
+/// The distance, in frames, up to which a time is that of a frame: also the last place of single precision, for animations
+/// of hours.
+fn near(frame: f64) -> f64 {
+    NEAR + frame * 1e-7
 }
 
 #[cfg(test)]

@@ -319,7 +319,7 @@ def sequence(
     :param mesh: the mesh whose vertices a point cache moves.
     :param report: the file for the report.
     :param fps: the frames a second in which a glTF's animation is edited. Without it every key of the animation is a
-        frame: the rate is the lowest one of at least 24 at which that is so.
+        frame: the rate is the lowest usual one from 24 on at which that is so.
     :param replace: whether numbered files of a glTF's animation may replace others.
     :param method: the method instead of the edit's, as in `apply`.
     :param memory: the most memory for the binding of a frame, as in `apply`.
