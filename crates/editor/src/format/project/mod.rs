@@ -10,42 +10,41 @@ mod camera;
 mod examples;
 mod flow;
 mod handle;
+mod mesh_reference;
 mod objects;
 mod place;
 mod poses;
+mod reading;
+mod writing;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::DVec3;
-use pliant_deform::{Attachment, AttachmentKind, CONTINUITY_RANGE, METHODS, Method};
-use pliant_mesh::{Cancel, Model, WeldOptions};
+use pliant_deform::{METHODS, Method};
+use pliant_mesh::{Model, WeldOptions};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use self::animation::StoredAnimation;
 use self::camera::StoredCamera;
-use self::examples::{are_weighed, read_examples, stored_examples};
+use self::examples::are_weighed;
 use self::flow::StoredFlow;
 use self::handle::StoredHandle;
-use self::objects::{StoredObject, StoredSmallParts, access, stored_objects};
+pub use self::mesh_reference::{MeshReference, geometry_hash};
+use self::objects::{StoredObject, StoredSmallParts};
 use self::poses::StoredPose;
-use super::attachment::{read_stored_attachments, stored_attachments};
 use super::digest::hexadecimal;
 use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
-use super::method::{method_to_value, read_method};
+use super::method::method_to_value;
 use super::reader::read;
-use super::setup::Setup;
-use super::strength::strength_kind;
-use crate::document::{Content, Document, Handle, HandleId, Paint, Pose, Tips, bits_equal, is_within};
+use crate::document::Pose;
 pub use crate::format::kept::StoredKept;
-use crate::format::stored_field::{Field, Ranges, for_each_drawn, ranges_where};
-use crate::region::{FileContacts, Region, region_input};
+use crate::format::stored_field::{Field, Ranges};
 use crate::warning::shortened;
-use crate::{Camera, Dye, STIFFNESS_RANGE};
+use crate::{Camera, Dye};
 
 /// The version of the project format for reading and writing.
 const PROJECT_VERSION: u64 = 1;
@@ -145,40 +144,6 @@ enum StoredTips {
     Held,
 }
 
-/// The mesh of a project.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MeshReference {
-    /// Its path, relative to the project's folder if it is below that; `None` is the built-in sample.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub path: Option<String>,
-    /// Its name, if its path doesn't give it: for a copy that was kept because the file was saved over.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// Its [`geometry_hash`].
-    pub geometry: String,
-}
-
-/// `sha256:` and the digest of the meaning of vertex numbers: the drawn positions' bits, the triangles and the file's
-/// vertices behind the drawn ones.
-pub fn geometry_hash(model: &Model) -> String {
-    let mut hash = Sha256::new();
-    let drawn = model.rest();
-    for count in [drawn.positions.len(), drawn.triangles.len(), drawn.file_vertex_count] {
-        hash.update((count as u64).to_le_bytes());
-    }
-    for position in &drawn.positions {
-        hash.update(position.to_array().map(f64::to_le_bytes).as_flattened());
-    }
-    for triangle in &drawn.triangles {
-        hash.update(triangle.map(|vertex| vertex.0.to_le_bytes()).as_flattened());
-    }
-    for vertex in &drawn.file_vertex {
-        hash.update(vertex.0.to_le_bytes());
-    }
-    hexadecimal(hash)
-}
-
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes by reference")]
 fn is_false(value: &bool) -> bool {
     !value
@@ -214,79 +179,6 @@ impl Project {
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
         text.push('\n');
         text
-    }
-
-    /// The present document.
-    pub fn of(document: &Document, model: &Model, camera: Option<&Camera>, mesh: MeshReference) -> Self {
-        let painted = |paint: Paint| ranges_where(model, |vertex| document.paint[vertex.index()] == paint);
-        let displacements = |field: &Arc<Vec<DVec3>>| {
-            let field = Arc::clone(field);
-            Field::of(model, move |vertex| {
-                let value = field[vertex.index()];
-                (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
-            })
-        };
-        let numbers = |field: &Option<Arc<Vec<f64>>>, default: f64| {
-            let field = field.as_ref()?;
-            Field::of(model, |vertex| {
-                let value = field[vertex.index()];
-                (value != default).then_some([value])
-            })
-        };
-        let in_full = document.in_full();
-        let mut attachments = stored_attachments(&document.method, &in_full.attachments);
-        for (name, attachment) in &*in_full.attachments {
-            if let Attachment::Shapes(examples) = attachment {
-                attachments.insert((*name).to_owned(), stored_examples(examples, model));
-            }
-        }
-        Self {
-            version: PROJECT_VERSION,
-            mesh,
-            method: method_to_value(&document.method, &BTreeMap::new()),
-            attachments,
-            inside_out: (*document.inside_out).clone(),
-            loose: document.loose.into(),
-            loose_parts: document
-                .loose_parts
-                .iter()
-                .map(|(part, loose)| (*part, (*loose).into()))
-                .collect(),
-            tips: (document.tips == Tips::Held).then_some(StoredTips::Held),
-            region: painted(Paint::Free),
-            fixed: painted(Paint::Fixed),
-            handles: in_full
-                .handles
-                .iter()
-                .map(|handle| StoredHandle::of(handle, painted(Paint::Handle(handle.id))))
-                .collect(),
-            next_handle: document.next_handle,
-            objects: stored_objects(&document.access, model),
-            isolated: document.access.isolated,
-            small_parts: StoredSmallParts::of(document.access.small),
-            stiffness: numbers(&document.stiffness, 1.0),
-            continuity: numbers(&document.continuity, *CONTINUITY_RANGE.end()),
-            rest: document.applied.then(|| displacements(&document.rest)).flatten(),
-            applied: document.applied,
-            shape: displacements(&document.from_rest),
-            // Data that opening makes again from the shape are not stored twice.
-            kept: document
-                .kept
-                .as_ref()
-                .filter(|_| !document.keeps_way_alone())
-                .map(|kept| StoredKept::of(kept, model)),
-            settled: document.settled,
-            weld: model.weld.distance,
-            strength: document.strength.as_ref().map(|strength| strength.share),
-            poses: document.poses.iter().map(StoredPose::of).collect(),
-            work_pose: None,
-            animation: StoredAnimation::of(document.animation()),
-            sequence: None,
-            own_key_times: false,
-            flow: StoredFlow::of(&document.fluid, &document.flow_options, model),
-            mesh_colours: None,
-            camera: camera.map(StoredCamera::of),
-        }
     }
 
     /// The joining of its mesh's vertices.
@@ -360,19 +252,6 @@ impl Project {
         }
     }
 
-    /// The document as it was shown: in its work pose, if it was in one.
-    ///
-    /// # Errors
-    /// Those of [`Self::document`].
-    pub(crate) fn shown_document(&self, model: &Model) -> Result<Document, EditError> {
-        let mut document = self.document(model)?;
-        if let Some(pose) = &self.work_pose {
-            document.enter_work_pose();
-            document.take_pose(&pose.pose(), |_| true);
-        }
-        Ok(document)
-    }
-
     /// That digest, if it is known.
     pub fn mesh_colours(&self) -> Option<&str> {
         self.mesh_colours.as_deref()
@@ -437,155 +316,4 @@ impl Project {
         let is_at_rest = !has_moved && self.handles.iter().all(StoredHandle::is_at_rest);
         self.rest.is_none() && (is_at_rest || self.strength == Some(0.0))
     }
-
-    /// The document on its mesh.
-    ///
-    /// # Errors
-    /// Another mesh; invalid values.
-    pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
-        let found = geometry_hash(model);
-        if found != self.mesh.geometry {
-            return Err(EditError::OtherMesh {
-                name: "the given one".to_owned(),
-                found: hash_shown(&found),
-                expected: hash_shown(&self.mesh.geometry),
-            });
-        }
-        let mut document = Content::new(model.surface.positions.len());
-        let (method, _) = read_method(&self.method).map_err(|error| error.under("method"))?;
-        let attachments = read_stored_attachments(&method, &self.attachments);
-        let mut attachments = attachments.map_err(|error| error.under("attachments"))?;
-        for declared in METHODS.iter().flat_map(|declaration| declaration.attachments) {
-            if let Some(stored) = self.attachments.get(declared.name)
-                && declared.kind == AttachmentKind::Shapes
-            {
-                let examples = read_examples(stored, model);
-                let examples = examples.map_err(|error| error.under(declared.name).under("attachments"))?;
-                attachments.insert(declared.name, examples);
-            }
-        }
-        document.attachments = Arc::new(attachments);
-        document.method = method;
-        document.loose = self.loose.into();
-        document.tips = match self.tips {
-            Some(StoredTips::Held) => Tips::Held,
-            None | Some(StoredTips::ComeAlong) => Tips::ComeAlong,
-        };
-        document.inside_out = Arc::new(self.inside_out.clone());
-        document.loose_parts = Arc::new(
-            self.loose_parts
-                .iter()
-                .map(|(part, loose)| (*part, (*loose).into()))
-                .collect(),
-        );
-        self.read_paint_and_handles(model, &mut document)?;
-        document.next_handle = self.next_handle;
-        document.access = Arc::new(access(&self.objects, self.isolated, self.small_parts, model)?);
-        let is_rigid = |value: f64| value == f64::INFINITY;
-        let stiffness = self.stiffness.as_ref();
-        document.stiffness = stiffness
-            .map(|field| field.numbers("stiffness", model, 1.0, STIFFNESS_RANGE, is_rigid))
-            .transpose()?;
-        let (continuity, highest) = (self.continuity.as_ref(), *CONTINUITY_RANGE.end());
-        document.continuity = continuity
-            .map(|field| field.numbers("continuity", model, highest, CONTINUITY_RANGE, |_| false))
-            .transpose()?;
-        document.applied = self.applied;
-        if let Some(rest) = &self.rest {
-            document.applied = true;
-            document.rest = rest.displacements("rest", model)?;
-        }
-        if let Some(shape) = &self.shape {
-            document.from_rest = shape.displacements("shape", model)?;
-        }
-        if let Some(kept) = &self.kept {
-            document.kept = Some(Arc::new(kept.on(model, "kept")?));
-        }
-        document.settled = self.settled;
-        if let Some(flow) = &self.flow {
-            document.flow_options = flow.options()?;
-            document.fluid = flow.fluid(model)?;
-        }
-        document.poses = Arc::new(self.poses.iter().map(StoredPose::pose).collect());
-        if let Some(animation) = &self.animation {
-            document.animation = animation.animation()?;
-        }
-        let mut document = Document::from(document);
-        if let Some(strength) = self.strength {
-            strength_kind()
-                .check(strength)
-                .map_err(|error| error.under("strength"))?;
-            document.take_part(strength);
-        }
-        if !document.is_moved() && !document.settled {
-            // This method moves nothing, so the other method's shape is dropped.
-            match document.kept {
-                Some(_) => document.settle(),
-                None => document.unbend(),
-            }
-        }
-        if document.animation().keys().is_empty() {
-            // Frames of an animation don't begin at the shape of one of them.
-            document.keep_way();
-        }
-        Ok(document)
-    }
-
-    fn read_paint_and_handles(&self, model: &Model, document: &mut Content) -> Result<(), EditError> {
-        let paint = Arc::make_mut(&mut document.paint);
-        let mut put = |ranges: &Ranges, name: &str, value: Paint| {
-            for_each_drawn(ranges, name, model, |vertex| {
-                if let Some(vertex) = vertex {
-                    paint[vertex.index()] = value;
-                }
-                Ok(())
-            })
-        };
-        put(&self.region, "region", Paint::Free)?;
-        put(&self.fixed, "fixed", Paint::Fixed)?;
-        for stored in &self.handles {
-            let id = HandleId(stored.id);
-            if document.handles.iter().any(|handle| handle.id == id) || stored.id >= self.next_handle {
-                return Err(EditError::Project(format!(
-                    "the handle `{}` has the number {}, which is taken or too large: give each handle its own number \
-                     below `next_handle`",
-                    shortened(&stored.name),
-                    stored.id
-                )));
-            }
-            put(
-                &stored.vertices,
-                &format!("handles: {}", shortened(&stored.name)),
-                Paint::Handle(id),
-            )?;
-            document.handles.push(stored.handle()?);
-        }
-        let handles = &document.handles;
-        let is_wrong = |handle: &&Handle| {
-            let parent = handle
-                .parent
-                .filter(|parent| handles.iter().any(|other| other.id == *parent));
-            handle.parent.is_some() && parent.is_none_or(|parent| is_within(handles, parent, handle.id))
-        };
-        match handles.iter().find(is_wrong) {
-            Some(handle) => Err(EditError::Project(format!(
-                "the parent of the handle `{}` is missing or rides along with it: remove its `parent`",
-                shortened(&handle.name)
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// The solver's input: the document's regions, from its own rest shape.
-    pub(crate) fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
-        let document = self.document(model)?;
-        let input = region_input(model, &document, &FileContacts::default());
-        let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup::of_document(&document, &region, &model.surface))
-    }
-}
-
-/// A part of a hash that is long enough to distinguish it from others.
-fn hash_shown(hash: &str) -> String {
-    hash.chars().take(19).chain("…".chars()).collect()
 }

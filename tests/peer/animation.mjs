@@ -1,0 +1,75 @@
+// Checks that three.js plays the animation in GLB with the positions of the point cache PC2 of the same edit.
+//
+//   npm install three
+//   node animation.mjs GLB PC2 FPS
+//
+// `pliant animate FILE --edit EDIT.json --output GLB`, and again with `PC2`. Ten frames are compared, vertex by vertex
+// in the file's order. Prints the largest distance as a share of the diagonal, and ends with status 1 above 1e-5.
+// Images are left out: node has no pictures.
+
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import { dirname, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const [glb, pc2, fps] = process.argv.slice(2);
+if (!fps) {
+    console.error('node animation.mjs GLB PC2 FPS');
+    process.exit(2);
+}
+const require = createRequire(import.meta.url);
+const root = dirname(dirname(require.resolve('three')));
+const load = (path) => import(pathToFileURL(resolve(root, path)));
+globalThis.self = globalThis;
+globalThis.ProgressEvent ??= class {};
+const THREE = await load('build/three.module.js');
+const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
+
+// The same GLB without materials and images.
+function bare(bytes) {
+    const length = bytes.readUInt32LE(12);
+    const json = JSON.parse(bytes.subarray(20, 20 + length).toString());
+    for (const name of ['materials', 'textures', 'images', 'samplers']) delete json[name];
+    for (const mesh of json.meshes) for (const primitive of mesh.primitives) delete primitive.material;
+    let text = Buffer.from(JSON.stringify(json));
+    text = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+    const rest = bytes.subarray(20 + length);
+    const head = Buffer.alloc(20);
+    bytes.copy(head, 0, 0, 20);
+    head.writeUInt32LE(20 + text.length + rest.length, 8);
+    head.writeUInt32LE(text.length, 12);
+    const all = Buffer.concat([head, text, rest]);
+    return all.buffer.slice(all.byteOffset, all.byteOffset + all.length);
+}
+
+const cache = readFileSync(pc2);
+const [count, frames] = [cache.readInt32LE(16), cache.readInt32LE(28)];
+const wanted = (frame, vertex) =>
+    new THREE.Vector3(...[0, 1, 2].map((k) => cache.readFloatLE(32 + 12 * (frame * count + vertex) + 4 * k)));
+
+const gltf = await new Promise((done, failed) => new GLTFLoader().parse(bare(readFileSync(glb)), '', done, failed));
+const mixer = new THREE.AnimationMixer(gltf.scene);
+mixer.clipAction(gltf.animations.at(-1)).setLoop(THREE.LoopOnce).play();
+mixer.clipAction(gltf.animations.at(-1)).clampWhenFinished = true;
+const meshes = [];
+gltf.scene.traverse((object) => object.isMesh && meshes.push(object));
+
+let [largest, found] = [0, 0];
+const bounds = new THREE.Box3();
+for (let sample = 0; sample < 10; sample += 1) {
+    const frame = Math.round((sample * (frames - 1)) / 9);
+    mixer.setTime(frame / Number(fps));
+    gltf.scene.updateMatrixWorld(true);
+    found = 0;
+    for (const mesh of meshes) {
+        for (let vertex = 0; vertex < mesh.geometry.attributes.position.count; vertex += 1) {
+            const place = mesh.localToWorld(mesh.getVertexPosition(vertex, new THREE.Vector3()));
+            bounds.expandByPoint(place);
+            largest = Math.max(largest, place.distanceTo(wanted(frame, found)));
+            found += 1;
+        }
+    }
+}
+const share = largest / bounds.getSize(new THREE.Vector3()).length();
+console.log(`${found} of ${count} vertices, ten of ${frames} frames: ${share.toExponential(1)} of the diagonal`);
+process.exit(found === count && share <= 1e-5 ? 0 : 1);
