@@ -7,23 +7,14 @@
 // in the file's order. Prints the largest distance as a share of the diagonal, and ends with status 1 above 1e-5.
 // Images are left out: node has no pictures.
 
-import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
-import { dirname, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { GLTFLoader, THREE } from './three.mjs';
 
 const [glb, pc2, fps] = process.argv.slice(2);
 if (!fps) {
     console.error('node animation.mjs GLB PC2 FPS');
     process.exit(2);
 }
-const require = createRequire(import.meta.url);
-const root = dirname(dirname(require.resolve('three')));
-const load = (path) => import(pathToFileURL(resolve(root, path)));
-globalThis.self = globalThis;
-globalThis.ProgressEvent ??= class {};
-const THREE = await load('build/three.module.js');
-const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
 
 // The same GLB without materials and images.
 function bare(bytes) {

@@ -9,15 +9,9 @@
 import { createRequire } from 'node:module';
 import { readFileSync } from 'node:fs';
 import { basename, dirname, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { GLTFLoader, THREE, load, root } from './three.mjs';
 
 const require = createRequire(import.meta.url);
-const root = dirname(dirname(require.resolve('three')));
-const load = (path) => import(pathToFileURL(resolve(root, path)));
-globalThis.self = globalThis;
-globalThis.ProgressEvent ??= class {};
-const THREE = await load('build/three.module.js');
-const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
 const { MeshoptDecoder } = await load('examples/jsm/libs/meshopt_decoder.module.js');
 
 // Draco by three.js' own decoder, without the browser's workers that its loader needs.

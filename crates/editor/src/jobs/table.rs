@@ -249,8 +249,8 @@ pub trait Executor {
         LARGE_MESH
     }
 
-    /// The time in milliseconds since some moment, for figures that a person reads and for the pace of frames; no result
-    /// depends on it. It is constant in an executor that does not measure.
+    /// The time in milliseconds since some moment, for figures that a person reads, the pace of frames and the speed of a
+    /// stroke of the flow brush. It is constant in an executor that does not measure.
     fn clock_ms(&self) -> fn() -> f64 {
         || 0.0
     }
