@@ -70,13 +70,15 @@ impl Editor {
     /// The one function through which everything changes.
     pub fn handle(&mut self, event: Event) {
         let picked = matches!(&event, Event::JobDone(done) if done.kind == JobKind::Pick);
+        // A frame has many events, and each of them would otherwise let some more through.
+        let goes_on = matches!(&event, Event::Tick) || !self.is_catching_up();
         if self.must_wait(&event) {
             self.waiting.push_back(event);
         } else {
             self.dispatch(event);
         }
         self.conclude();
-        if picked || self.is_catching_up() {
+        if picked || (goes_on && self.is_catching_up()) {
             self.catch_up();
         }
         let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
