@@ -62,7 +62,7 @@ impl Counterparts {
         let images = grown(surface, topology, plane, images, cancel)?;
         let pairs = images.iter().enumerate().filter_map(|(vertex, image)| {
             let vertex = SurfaceVertex(vertex as u32);
-            image.filter(|&image| image != vertex).map(|image| [vertex, image])
+            image.map(|image| [vertex, image])
         });
         let mut both_ways: Vec<[SurfaceVertex; 2]> = pairs.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         both_ways.par_sort_unstable();
@@ -79,7 +79,7 @@ impl Counterparts {
     }
 
     /// The counterparts of this vertex, ascending: the vertex nearest to its image, and those whose image is nearest to
-    /// it. Empty if the shape has no other side, and for a vertex on the plane that is its own image.
+    /// it. A vertex at the plane may be its own. Empty if the shape lacks the other side.
     pub fn of(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
         let [from, to] = [vertex.index(), vertex.index() + 1].map(|place| self.offsets[place] as usize);
         &self.vertices[from..to]

@@ -5,11 +5,16 @@
 //! there the pairs grow over the rest: the place of a vertex' counterpart follows from its neighbours' by a reflection
 //! and a rotation, which is fitted to the pairs around it, so lengths along the surface stay, and the nearest point of the
 //! surface there is taken. Where the surface is too far away, or faces elsewhere, the other side lacks the part.
+//!
+//! Growing adds errors up, differently on both sides, so that the image of a part would have rags and holes. Rounds of
+//! relaxation follow: each pair goes to the mean of the places at which its neighbours' pairs expect it and at which the
+//! vertices expect it whose counterpart it is.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use glam::{DQuat, DVec3};
+use rayon::prelude::*;
 
 use super::plane::MirrorPlane;
 use crate::geometry::{nearest_on_triangle, vertex_normals};
@@ -23,6 +28,9 @@ const STRETCH: f64 = 2.0;
 
 /// The least cosine between a vertex' mirrored normal and its image's.
 const ALIKE: f64 = 0.3;
+
+/// How often the grown pairs are moved to where their surroundings expect them.
+const ROUNDS: usize = 24;
 
 /// A counterpart is at most so many times as far from its expected place as the longest edges there, and so much farther
 /// for each unit of its way from the set that counts: what a bend stretches and shrinks adds up until the limb's tip.
@@ -60,6 +68,10 @@ pub(super) fn grown(
         }
     }
     growth.grow(cancel)?;
+    for _ in 0..ROUNDS {
+        cancel.check()?;
+        growth.relax(&kept);
+    }
     let own = (0..).map(SurfaceVertex).zip(&growth.pairs);
     let image = own.map(|(vertex, pair)| match is_grown[topology.component(vertex) as usize] {
         true => pair.map(|pair| pair.vertex),
@@ -198,6 +210,52 @@ impl Growth<'_> {
         Ok(())
     }
 
+    /// Moves the counterparts of the vertices that were not `kept` to where those of their neighbours expect them, and
+    /// where the vertices expect them whose counterpart is there.
+    fn relax(&mut self, kept: &[bool]) {
+        let is_moved = |vertex: SurfaceVertex| !kept[vertex.index()];
+        let neighbours = |vertex: SurfaceVertex| self.topology.neighbours(vertex).iter();
+        let is_used = |vertex: SurfaceVertex| is_moved(vertex) || neighbours(vertex).any(|other| is_moved(*other));
+        let turns: Vec<DQuat> = (0..self.pairs.len() as u32)
+            .into_par_iter()
+            .map(SurfaceVertex)
+            .map(|vertex| match self.pairs[vertex.index()] {
+                Some(pair) if is_used(vertex) => self.turn(vertex, pair),
+                _ => DQuat::IDENTITY,
+            })
+            .collect();
+        let mut back: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); self.pairs.len()];
+        for (vertex, pair) in (0..).map(SurfaceVertex).zip(&self.pairs) {
+            if let Some(pair) = pair.filter(|_| is_used(vertex)) {
+                back[pair.vertex.index()].push(vertex);
+            }
+        }
+        let relaxed = |vertex: SurfaceVertex| -> Option<Pair> {
+            let pair = self.pairs[vertex.index()]?;
+            if !is_moved(vertex) {
+                return Some(pair);
+            }
+            let here = self.position(vertex);
+            let by_neighbours = neighbours(vertex).filter_map(|&other| {
+                let edge = self.plane.mirrored_vector(here - self.position(other));
+                Some(self.pairs[other.index()]?.point + turns[other.index()] * edge)
+            });
+            let by_counterparts = back[vertex.index()].iter().filter_map(|&other| {
+                let off = turns[other.index()].inverse() * (here - self.pairs[other.index()]?.point);
+                Some(self.position(other) + self.plane.mirrored_vector(off))
+            });
+            let means: Vec<DVec3> = [mean(by_neighbours), mean(by_counterparts)]
+                .into_iter()
+                .flatten()
+                .collect();
+            let expected = mean(means.into_iter())?;
+            Some(self.nearest(pair.vertex, expected))
+        };
+        let vertices = (0..self.pairs.len() as u32).into_par_iter().map(SurfaceVertex);
+        let pairs = vertices.map(relaxed).collect();
+        self.pairs = pairs;
+    }
+
     /// The counterpart of a vertex so far from the set that counts, by those of its neighbours.
     fn expected(&self, vertex: SurfaceVertex, way: f64) -> Option<Pair> {
         let (mut sum, mut count, mut from) = (DVec3::ZERO, 0.0, None);
@@ -240,4 +298,10 @@ impl Growth<'_> {
         }
         DQuat::from_axis_angle(to, across.atan2(along)) * tilt
     }
+}
+
+/// The mean of points; `None` if there are none.
+fn mean(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
+    let (sum, count) = points.fold((DVec3::ZERO, 0.0), |(sum, count), point| (sum + point, count + 1.0));
+    (count > 0.0).then(|| sum / count)
 }

@@ -24,11 +24,11 @@ const SAME: f64 = 0.95;
 const ROUNDS: usize = 30;
 /// A fit ends when a round turns the plane by less than this in radians, and shifts it by less as a share of the size.
 const SETTLED: f64 = 1e-7;
-/// The share of the samples that count: parts that the other side lacks, such as a bag in one hand, do not.
-const COUNTED: f64 = 0.8;
-/// A shape has a plane if the samples' images are on average this close to the surface, as a share of the samples' mean
-/// distance from the centroid.
-const NEAR: f64 = 0.04;
+/// The share of the samples that count, since parts that the other side lacks, such as a bag in one hand, do not; and how
+/// close to the surface their images are on average if the shape has a plane, as a share of the samples' mean distance
+/// from the centroid. If most of the limbs stand differently on both sides, as those of a walking horse do, the trunk
+/// alone decides, and must be the more alike.
+const COUNTED: [(f64, f64); 2] = [(0.8, 0.04), (0.6, 0.02)];
 /// If several planes fit equally well, as for a ball, the one across the world's first axis counts.
 const ALIKE: f64 = 1.2;
 
@@ -88,7 +88,8 @@ pub fn symmetry_plane(
         .into_par_iter()
         .filter_map(|normal| {
             let plane = MirrorPlane::new(normal, normal.dot(centroid))?;
-            Some((counted_mean(few.iter().map(|p| nearest(plane.mirrored(*p)))), normal))
+            let apart = few.iter().map(|p| nearest(plane.mirrored(*p)));
+            Some((counted_mean(apart, COUNTED[0].0), normal))
         })
         .collect();
     cancel.check()?;
@@ -101,24 +102,30 @@ pub fn symmetry_plane(
             chosen.push(normal);
         }
     }
-    let fitted: Vec<(f64, MirrorPlane)> = chosen
-        .into_par_iter()
-        .filter_map(|normal| {
-            let plane = fit(MirrorPlane::new(normal, normal.dot(centroid))?, &shape, cancel)?;
-            let apart = |p: &DVec3| {
-                let on_surface = bvh.nearest_on_triangles(plane.mirrored(*p), size, |_| true);
-                on_surface.map_or(size, |(_, distance)| distance)
-            };
-            Some((counted_mean(shape.samples.iter().map(apart)), plane))
-        })
-        .collect();
-    cancel.check()?;
-    progress.set(1.0);
-    let best = fitted.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
-    // Rounding does not decide between planes that are exact.
-    let limit = (ALIKE * best).max(1e-6 * size);
-    let first = fitted.into_iter().find(|(error, _)| *error <= limit);
-    Ok(first.filter(|(error, _)| *error <= NEAR * size).map(|(_, plane)| plane))
+    for (counted, near) in COUNTED {
+        let fitted: Vec<(f64, MirrorPlane)> = chosen
+            .par_iter()
+            .filter_map(|normal| {
+                let plane = MirrorPlane::new(*normal, normal.dot(centroid))?;
+                let plane = fit(plane, &shape, counted, cancel)?;
+                let apart = |p: &DVec3| {
+                    let on_surface = bvh.nearest_on_triangles(plane.mirrored(*p), size, |_| true);
+                    on_surface.map_or(size, |(_, distance)| distance)
+                };
+                Some((counted_mean(shape.samples.iter().map(apart), counted), plane))
+            })
+            .collect();
+        cancel.check()?;
+        let best = fitted.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
+        // Rounding does not decide between planes that are exact.
+        let limit = (ALIKE * best).max(1e-6 * size);
+        let first = fitted.into_iter().find(|(error, _)| *error <= limit);
+        if let Some((_, plane)) = first.filter(|(error, _)| *error <= near * size) {
+            progress.set(1.0);
+            return Ok(Some(plane));
+        }
+    }
+    Ok(None)
 }
 
 /// Vertices that represent equal areas.
@@ -145,20 +152,20 @@ fn directions() -> Vec<DVec3> {
     DVec3::AXES.into_iter().chain(lattice).collect()
 }
 
-/// The mean of the smallest of these numbers.
-fn counted_mean(numbers: impl Iterator<Item = f64>) -> f64 {
+/// The mean of the smallest of these numbers, a share of them.
+fn counted_mean(numbers: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut numbers: Vec<f64> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
-    let counted = &numbers[..counted(numbers.len())];
+    let counted = &numbers[..counted(numbers.len(), share)];
     counted.iter().sum::<f64>() / counted.len() as f64
 }
 
-fn counted(count: usize) -> usize {
-    ((COUNTED * count as f64) as usize).max(1)
+fn counted(count: usize, share: f64) -> usize {
+    ((share * count as f64) as usize).max(1)
 }
 
-/// Fits a plane to the samples from its present place; `None` if nothing can be fitted, or if it was cancelled.
-fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, cancel: &Cancel) -> Option<MirrorPlane> {
+/// Fits a plane to a share of the samples from its present place; `None` if nothing can be fitted, or if it was cancelled.
+fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, share: f64, cancel: &Cancel) -> Option<MirrorPlane> {
     for _ in 0..ROUNDS {
         cancel.check().ok()?;
         let pair = |p: &DVec3| {
@@ -167,7 +174,7 @@ fn fit(mut plane: MirrorPlane, shape: &Shape<'_>, cancel: &Cancel) -> Option<Mir
         };
         let mut pairs: Vec<(f64, DVec3, usize)> = shape.samples.iter().filter_map(pair).collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        pairs.truncate(counted(pairs.len()));
+        pairs.truncate(counted(pairs.len(), share));
         let next = step(plane, shape, &pairs)?;
         let turned = next.normal().distance(plane.normal());
         let shifted = (next.height(shape.centroid) - plane.height(shape.centroid)).abs() / shape.size;

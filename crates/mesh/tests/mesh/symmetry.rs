@@ -218,6 +218,79 @@ fn a_limb_that_is_bent_on_one_side_has_its_counterparts_along_the_surface() {
     }
 }
 
+/// Two legs that hang down from a bend, a tube of radius 1 whose ends are 8 below; each is turned forward by an angle in
+/// radians below y = −2. Ring `r` of 121 is the image of ring 120 − r.
+fn legs(forward_rad: [f64; 2]) -> Drawn {
+    let (apart, leg) = (1.25, 8.0);
+    let mut tube = shapes::tube(36, 120, 2.0 * leg + PI * apart);
+    for p in &mut tube.positions {
+        let bend = (p.z - leg).clamp(0.0, PI * apart) / apart;
+        let below = (leg - p.z).max(p.z - leg - PI * apart).max(0.0);
+        let out = DVec3::new(-bend.cos(), bend.sin(), 0.0);
+        // Not round, so that a turn about the leg shows.
+        let [x, z] = [p.x, 1.3 * p.y];
+        *p = (apart + x) * out + DVec3::new(0.0, -below, z);
+        let hip = DVec3::new(0.0, -2.0, 0.0);
+        let angle = (-2.0 - p.y).clamp(0.0, 1.0) * forward_rad[usize::from(p.x > 0.0)];
+        *p = hip + DQuat::from_rotation_x(angle) * (*p - hip);
+    }
+    tube
+}
+
+#[test]
+fn near_legs_that_stand_unevenly_are_each_other_s_counterparts_without_rags() {
+    for forward_rad in [[0.0, 0.0], [0.0, 0.25], [0.12, -0.12]] {
+        let (model, hanging) = (shapes::model(legs(forward_rad)), legs([0.0, 0.0]));
+        let all = counterparts(&model, MirrorPlane::across(0, 0.0));
+        let surface = |drawn: usize| model.drawn.surface_vertex(DrawnVertex(drawn as u32)).unwrap();
+        let mut place = vec![DVec3::ZERO; model.surface.positions.len()];
+        for (drawn, p) in hanging.positions.iter().enumerate() {
+            place[surface(drawn).index()] = *p;
+        }
+        let (mut off, mut count, mut torn) = (0.0, 0.0, 0.0);
+        for (vertex, own) in (0..).map(SurfaceVertex).zip(&place) {
+            let image = *own * DVec3::new(-1.0, 1.0, 1.0);
+            for other in all.of(vertex) {
+                off += image.distance(place[other.index()]);
+                count += 1.0;
+            }
+            for beside in model.topology.neighbours(vertex) {
+                let of_beside = all.of(*beside).iter();
+                let farthest = of_beside.flat_map(|other| {
+                    let own = all.of(vertex).iter();
+                    own.map(|own| place[own.index()].distance(place[other.index()]))
+                });
+                torn += if farthest.fold(0.0, f64::max) > 0.9 { 1.0 } else { 0.0 };
+            }
+        }
+        // Edges are 0.2 long.
+        assert!(off < 0.5 * count, "{forward_rad:?}: {}", off / count);
+        assert!(torn < 0.15 * count, "{forward_rad:?}: {torn} of {count}");
+    }
+}
+
+#[test]
+fn limbs_that_all_stand_unevenly_do_not_hide_the_trunk_s_plane() {
+    // Four legs and a neck, each turned by its own angle: a third of the surface is elsewhere on the other side.
+    let mut drawn = shapes::icosphere(5);
+    for p in &mut drawn.positions {
+        let unit = *p;
+        let legs = [[0.5, 1.0], [-0.5, 1.0], [0.5, -1.0], [-0.5, -1.0]];
+        let swings = [0.5, -0.5, -0.4, 0.4];
+        // The front is broader and higher than the back.
+        *p = unit * DVec3::new(0.7 + 0.25 * unit.z, 0.8 + 0.3 * unit.z, 1.6);
+        for ([x, z], swing) in legs.into_iter().zip(swings) {
+            let root = DVec3::new(x, -0.7, 0.5 * z).normalize();
+            let near = (-40.0 * unit.distance_squared(root)).exp();
+            *p += near * 2.2 * DVec3::new(0.0, -f64::cos(swing), f64::sin(swing));
+        }
+        let neck = (-30.0 * unit.distance_squared(DVec3::new(0.0, 0.6, 0.8))).exp();
+        *p += neck * DVec3::new(0.7, 0.9, 0.6);
+    }
+    let plane = plane_of(&shapes::model(drawn)).unwrap();
+    assert!(plane.normal().x.abs() > 4.0_f64.to_radians().cos(), "{plane:?}");
+}
+
 #[test]
 fn what_lies_on_one_side_alone_has_no_counterpart() {
     let model = shapes::model(shapes::moved(
