@@ -15,6 +15,7 @@ use super::overlay::Lit;
 use super::paint::PaintStroke;
 use super::spine::{Sample, around, to_the_middle};
 use super::stroke::StrokeGesture;
+use super::stroke_part::on_one_part;
 use super::uncut_reach::uncut_reach;
 use crate::document::{HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
@@ -63,17 +64,15 @@ impl CurveStroke {
 
     /// The samples on the surface, evenly along the stroke.
     fn samples(&self, picking: &Picking<'_>) -> Vec<Sample> {
-        let points_px = self.path.evenly_px(STEP_PX);
-        points_px.filter_map(|px| self.sample(picking, px)).collect()
-    }
-
-    fn sample(&self, picking: &Picking<'_>, px: DVec2) -> Option<Sample> {
-        let ray = picking.camera.ray(px, picking.viewport_px);
-        let pick = picking.along(ray)?;
-        match self.shape {
-            StrokeShape::Spine => Some(Sample::inside(picking, pick, ray)),
-            _ => Some(Sample::on(pick)),
+        let places = self.path.evenly_px(STEP_PX).filter_map(|px| {
+            let ray = picking.camera.ray(px, picking.viewport_px);
+            Some((picking.along(ray)?, ray))
+        });
+        if self.shape != StrokeShape::Spine {
+            return places.map(|(pick, _)| Sample::on(pick)).collect();
         }
+        let places = on_one_part(places.collect(), picking).into_iter();
+        places.map(|(pick, ray)| Sample::inside(picking, pick, ray)).collect()
     }
 
     /// The curve with what follows it; `None` if the stroke is too short for one.

@@ -6,10 +6,14 @@
 use glam::DVec3;
 use pliant_mesh::{Curve, Model, SurfaceVertex, Topology};
 
+use super::spine_tips::tips;
 use crate::view::{Pick, Picking, Ray};
 
 /// The limb around a spine has the vertices within this many of its half thicknesses.
 const GIRTH: f64 = 1.6;
+
+/// Tips that it cuts off are its own if they are within this many half thicknesses of the spine.
+const TIP: f64 = 4.0;
 
 /// A vertex turns away from the spine of its limb if the cosine of its normal and the way to it is at least this. A
 /// crotch, from which a stroke on a thigh would run over to the other one, has a smaller one.
@@ -153,14 +157,15 @@ pub(super) fn around(
     let line: Vec<DVec3> = (0..=SPANS).map(at).collect();
     let outwards = line[1] - line[0];
     // From the line to a vertex near it.
-    let way = |vertex: SurfaceVertex| {
+    let way_within = |vertex: SurfaceVertex, halves: f64| {
         let point = shown.position(vertex);
         let is_behind = (point - line[0]).dot(outwards) < 0.0;
         let ahead = if is_behind { &line[SPANS / 4..] } else { &line[..] };
         let ways = ahead.windows(2).map(|ends| way_to(point, ends));
         let shortest = ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
-        (shortest.length() <= GIRTH * half).then_some(shortest)
+        (shortest.length() <= halves * half).then_some(shortest)
     };
+    let way = |vertex: SurfaceVertex| way_within(vertex, GIRTH);
     let side = |vertex: SurfaceVertex| {
         let way = way(vertex)?.normalize_or_zero();
         Some(way.dot(shown.normal(vertex).normalize_or_zero()))
@@ -189,6 +194,8 @@ pub(super) fn around(
             found.extend(fold);
         }
     }
+    let is_near = |vertex: SurfaceVertex| way_within(vertex, TIP).is_some();
+    found.extend(tips(&found, topology, is_passed.len(), is_near));
     found.sort_unstable();
     found
 }

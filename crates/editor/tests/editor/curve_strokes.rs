@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use crate::rig::{Fingerprint, Rig, VIEWPORT_PX};
-use glam::{DVec2, DVec3};
-use pliant_editor::{Command, EditFile, HandleCurve, JobKind, Key, NamedView, StrokeShape, Symmetry, ToolMode};
+use glam::{DAffine3, DVec2, DVec3};
+use pliant_editor::{Command, EditFile, HandleCurve, JobKind, Key, NamedView, Paint, StrokeShape, Symmetry, ToolMode};
 use pliant_mesh::shapes;
 
 /// A tube along the view's horizontal axis that bends by ARAP.
@@ -100,6 +100,45 @@ fn a_spine_runs_through_the_middle_of_the_limb_which_follows_its_end_as_a_chain(
     rig.redo();
     rig.drain();
     assert_eq!(Fingerprint::of(rig.editor.document()), after);
+}
+
+#[test]
+fn a_spine_begun_or_crossing_on_a_part_before_the_limb_goes_on_through_the_limb_behind_it() {
+    for ball_at in [0.2, 0.6] {
+        let mut limb = shapes::tube(24, 60, 10.0);
+        for p in &mut limb.positions {
+            *p = DVec3::new(p.z, p.x, p.y);
+        }
+        let length = limb.positions.iter().map(|p| p.x).fold(f64::NEG_INFINITY, f64::max);
+        let low = limb.positions.iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+        let before = DVec3::new(low + ball_at * (length - low), 0.0, 5.0);
+        let ball = shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(before));
+        let mut rig = Rig::open(shapes::together(&[limb, ball]));
+        rig.command(Command::View(NamedView::Front));
+        rig.drain();
+        rig.command(Command::SetTool(ToolMode::PaintHandle));
+        rig.command(Command::SetStrokeShape(StrokeShape::Spine));
+        let at = |share: f64| DVec3::new(low + share * (length - low), 0.0, 0.0);
+        let way: Vec<DVec2> = (0..=20)
+            .map(|step| px(&rig, at(0.2 + 0.7 * f64::from(step) / 20.0)))
+            .collect();
+        rig.swipe(&way);
+        rig.drain();
+        let spine = curve(&rig);
+        assert!((spine.rest().points()[0].x - at(0.2).x).abs() < 0.3, "{ball_at}");
+        for point in spine.rest().points() {
+            let off = DVec2::new(point.y, point.z).length();
+            assert!(off < 0.1, "{ball_at}: {point}");
+        }
+        let handles = rig.editor.document().handles().to_vec();
+        let paint = rig.editor.document().paint();
+        let of_handle = paint.iter().zip(&rig.model.surface.positions);
+        let painted: Vec<DVec3> = of_handle
+            .filter(|(own, _)| **own == Paint::Handle(handles[0].id))
+            .map(|(_, p)| *p)
+            .collect();
+        assert!(painted.len() > 500 && painted.iter().all(|p| p.z < 2.0), "{ball_at}");
+    }
 }
 
 #[test]
@@ -271,7 +310,7 @@ fn a_curve_on_the_surface_takes_what_is_under_it_and_other_strokes_are_refused_i
     stroke(&mut rig, StrokeShape::Curve, 0.3, 0.7);
     let drawn = curve(&rig);
     assert!(!drawn.rest().is_closed() && !rig.editor.view().chain);
-    let members = rig.count(pliant_editor::Paint::Handle(rig.editor.document().handles()[0].id));
+    let members = rig.count(Paint::Handle(rig.editor.document().handles()[0].id));
     assert!((20..400).contains(&members), "{members}");
     // On the surface, not inside.
     let middle = rig.model.bounds().unwrap().centre();
