@@ -1,19 +1,23 @@
 //! What a handle on a limb sets free: the regions of brush strokes and spines on limbs of scans, drawn by the editor's own
-//! gestures. `limbs [FOLDER [LIMB ..]]`: all limbs, or those whose names contain one of the words; pictures of the
-//! regions go to the folder.
+//! gestures. `limbs [--symmetry] [FOLDER [LIMB ..]]`: all limbs, or those whose names contain one of the words; pictures of
+//! the regions go to the folder.
 //!
 //! A row for each limb: the handle's share of the surface, the free area in areas of the handle, and the free share of a
-//! part of the body that no artist would want to move with that limb.
+//! part of the body that no artist would want to move with that limb. With symmetry, also the twin's area in areas of the
+//! handle, the length of its rim in lengths of the handle's rim, which is 1 for a mirror image and more for a ragged one,
+//! and the number of its pieces.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that reports")]
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_editor::{
-    Button, Command, Editor, Event, InlineExecutor, Modifiers, NamedView, Pointer, StrokeShape, ToolMode,
+    Button, Command, Editor, Event, Handle, InlineExecutor, Modifiers, NamedView, Paint, Pointer, StrokeShape,
+    Symmetry, ToolMode,
 };
-use pliant_mesh::{Bounds, Model, bounding_box, face_area};
+use pliant_mesh::{Bounds, Model, SurfaceVertex, bounding_box, face_area};
 use pliant_tests::{assets, datum, open, run};
 
 const VIEWPORT_PX: DVec2 = DVec2::new(1000.0, 1000.0);
@@ -125,10 +129,12 @@ const fn brush(
 }
 
 fn main() {
-    let mut words = std::env::args().skip(1);
+    let mut words = std::env::args().skip(1).peekable();
+    let is_symmetric = words.next_if_eq("--symmetry").is_some();
     let folder = words.next();
     let words: Vec<String> = words.collect();
-    println!("{:<32}{:>10}{:>12}{:>12}", "limb", "handle", "free area", "apart");
+    let twin = if is_symmetric { "     twin    rim  pieces" } else { "" };
+    println!("{:<32}{:>10}{:>12}{:>12}{twin}", "limb", "handle", "free area", "apart");
     let mut sums = [0.0; 2];
     for limb in LIMBS {
         let kind = match limb.stroke {
@@ -146,10 +152,17 @@ fn main() {
         let Some(file) = file else { continue };
         let model = open(&file).model;
         let mut limb_editor = Drawn::open(&model, limb.view);
+        if is_symmetric {
+            limb_editor.paint_both_sides();
+        }
         limb_editor.stroke(&limb.stroke);
         let [handle, free, apart] = limb_editor.shares(&model, limb.apart);
+        let twin = match limb_editor.twin(&model) {
+            Some((area, rim, pieces)) => format!("{area:>9.2}{rim:>7.2}{pieces:>8}"),
+            None => String::new(),
+        };
         println!(
-            "{name:<32}{:>9.1}%{:>12.2}{:>11.1}%",
+            "{name:<32}{:>9.1}%{:>12.2}{:>11.1}%{twin}",
             100.0 * handle,
             free / handle,
             100.0 * apart
@@ -248,6 +261,49 @@ impl Drawn {
         self.editor
             .handle(Event::PointerReleased(at(way[way.len() - 1]), Button::Primary));
         self.drain();
+    }
+
+    fn paint_both_sides(&mut self) {
+        self.editor
+            .handle(Event::Command(Command::SetSymmetry(Symmetry::Found)));
+        self.drain();
+        if let Some(problem) = self.editor.view().problem {
+            println!("{problem}");
+        }
+    }
+
+    /// The twin's area and length of its rim, in those of the handle, and the number of its pieces.
+    fn twin(&self, model: &Model) -> Option<(f64, f64, usize)> {
+        let [first, second] = self.editor.document().handles() else {
+            return None;
+        };
+        let paint = self.editor.document().paint();
+        let is_of = |v: SurfaceVertex, handle: &Handle| paint[v.index()] == Paint::Handle(handle.id);
+        let extent = |handle: &Handle| {
+            let (mut area, mut rim) = (0.0, 0.0);
+            for triangle in &model.surface.triangles {
+                let corners = triangle.map(|v| model.surface.positions[v.index()]);
+                let own = triangle.iter().filter(|v| is_of(**v, handle)).count();
+                area += face_area(corners) * own as f64 / 3.0;
+                let edges = [0, 1, 2].map(|corner| corners[corner].distance(corners[(corner + 1) % 3]));
+                rim += if own == 1 || own == 2 { edges.iter().sum() } else { 0.0 };
+            }
+            [area, rim]
+        };
+        let ([area, rim], [twin_area, twin_rim]) = (extent(first), extent(second));
+        let mut rest: BTreeSet<SurfaceVertex> = (0..paint.len() as u32)
+            .map(SurfaceVertex)
+            .filter(|v| is_of(*v, second))
+            .collect();
+        let mut pieces = 0;
+        while let Some(start) = rest.pop_first() {
+            pieces += 1;
+            let mut front = vec![start];
+            while let Some(v) = front.pop() {
+                front.extend(model.topology.neighbours(v).iter().filter(|other| rest.remove(other)));
+            }
+        }
+        Some((twin_area / area, twin_rim / rim, pieces))
     }
 
     /// The shares of the surface of handle and free part, and the free share of a part of the box.

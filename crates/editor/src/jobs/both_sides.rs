@@ -59,11 +59,4 @@ impl BothSides {
         };
         vertices.iter().flat_map(of).collect()
     }
-
-    /// Whether some of these vertices, which are ascending, are partners of others of them: then the set is on both
-    /// sides of the plane.
-    pub(crate) fn are_crossed_by(&self, vertices: &[SurfaceVertex]) -> bool {
-        let mut opposite = self.opposite(vertices.iter().copied());
-        opposite.any(|vertex| vertices.binary_search(&vertex).is_ok())
-    }
 }

@@ -23,6 +23,7 @@ mod firmness;
 mod flow_brush;
 mod flow_stroke;
 mod gesture;
+mod halves;
 mod hidden_points;
 mod intersections;
 mod joint_shapes;

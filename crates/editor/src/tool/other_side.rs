@@ -7,18 +7,21 @@ use std::sync::Arc;
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::document::{HandleId, Paint, link_twins};
+use super::halves::{Half, Halves, NO_TWIN, State, is_twin};
+use crate::document::{Document, HandleId, Paint, link_twins};
 use crate::jobs::BothSides;
-use crate::workspace::{Workspace, members, twin_across};
+use crate::workspace::{Workspace, members};
 
 /// The other side of an active stroke.
 #[derive(Debug)]
 pub(super) struct OtherSide {
     sides: Arc<BothSides>,
-    /// The paint there; decided by the first vertices of the stroke.
-    paint: Option<Paint>,
-    /// The twin that this stroke has made.
-    made: Option<HandleId>,
+    /// The painted handle's vertices on both sides, from the stroke's first vertices on.
+    halves: Option<Halves>,
+    /// The painted handle's twin.
+    twin: Option<HandleId>,
+    /// Whether this stroke has made the twin.
+    is_made: bool,
 }
 
 impl OtherSide {
@@ -27,45 +30,75 @@ impl OtherSide {
         let sides = Arc::clone(workspace.both_sides()?);
         Some(Self {
             sides,
-            paint: None,
-            made: None,
+            halves: None,
+            twin: None,
+            is_made: false,
         })
     }
 
-    /// The vertices to paint on the other side when `vertices` are painted with `own`, and their paint.
+    /// The vertices to paint on both sides when `vertices` are painted with `own`, each with its paint.
     pub(super) fn of_painted(
         &mut self,
         workspace: &mut Workspace,
         own: Paint,
         vertices: &[SurfaceVertex],
-    ) -> (Vec<SurfaceVertex>, Paint) {
-        let mut opposite = Vec::new();
-        if let Paint::Handle(id) = own
-            && self.paint.is_none()
-            && !vertices.is_empty()
-        {
-            let had = workspace
-                .document
-                .handle(id)
-                .is_some_and(|handle| handle.twin.is_some());
-            match twin_across(workspace, &self.sides, id, vertices) {
-                Some((twin, former)) => {
-                    self.paint = Some(Paint::Handle(twin));
-                    self.made = (!had).then_some(twin);
-                    opposite = former;
-                }
-                None => self.paint = Some(own),
+    ) -> Vec<(Vec<SurfaceVertex>, Paint)> {
+        match own {
+            Paint::Handle(id) if !vertices.is_empty() => self.of_handle(workspace, id, vertices),
+            _ => {
+                let mut all = vertices.to_vec();
+                all.extend(self.sides.opposite(vertices.iter().copied()));
+                all.sort_unstable();
+                all.dedup();
+                vec![(all, own)]
             }
         }
-        self.join_where_they_meet(workspace, own, vertices);
-        let paint = self.paint.unwrap_or(own);
-        opposite.extend(self.sides.opposite(vertices.iter().copied()));
-        opposite.sort_unstable();
-        opposite.dedup();
-        // The brush decides if both would paint.
-        let document = &workspace.document;
-        opposite.retain(|vertex| document.paint()[vertex.index()] != own && vertices.binary_search(vertex).is_err());
-        (opposite, paint)
+    }
+
+    fn of_handle(
+        &mut self,
+        workspace: &mut Workspace,
+        id: HandleId,
+        vertices: &[SurfaceVertex],
+    ) -> Vec<(Vec<SurfaceVertex>, Paint)> {
+        let Some(model) = workspace.model().cloned() else {
+            return Vec::new();
+        };
+        let is_first = self.halves.is_none();
+        let halves = self.halves.get_or_insert_with(|| {
+            let former = workspace.document.handle(id).and_then(|handle| handle.twin);
+            self.twin = former.map(|twin| twin.handle);
+            let mut halves = Halves::of_nothing(Arc::clone(&self.sides), model, former.is_some());
+            halves.give(&members(&workspace.document, id));
+            halves
+        });
+        let (state, former) = (halves.state(), halves.given().len());
+        let new = halves.give(vertices);
+        // A handle without a twin gets one of all its vertices.
+        let is_changed = is_first && self.twin.is_none() || halves.state() != state;
+        let changed = if is_changed { &halves.given()[..former] } else { &[] };
+        let are_one = halves.state() == State::One;
+        if self.twin.is_none() && !are_one {
+            self.twin = Some(workspace.document.add_handle());
+            self.is_made = true;
+        }
+        let paint = workspace.document.paint();
+        let is_of_another = |vertex: &SurfaceVertex| match paint[vertex.index()] {
+            Paint::Handle(other) => other != id && Some(other) != self.twin,
+            _ => false,
+        };
+        let mut around = halves.around(changed);
+        around.retain(|(vertex, _)| !is_of_another(vertex));
+        around.extend(halves.around(&new));
+        let of = |half: Half| {
+            let of_half = around.iter().filter(|(_, own)| *own == half);
+            of_half.map(|(vertex, _)| *vertex).collect::<Vec<_>>()
+        };
+        let mut between = of(Half::Neither);
+        between.retain(|vertex| matches!(paint[vertex.index()], Paint::Handle(_)) && !is_of_another(vertex));
+        let mut painted = vec![(of(Half::Own), Paint::Handle(id)), (between, Paint::Bare)];
+        painted.extend(self.twin.map(|twin| (of(Half::Twin), Paint::Handle(twin))));
+        painted
     }
 
     /// Returns true if the vertices, where they are shown, are all on one side of the plane.
@@ -78,23 +111,27 @@ impl OtherSide {
         first != 0.0 && beyond.all(|other| other * first > 0.0)
     }
 
-    /// A stroke that reaches the twin that it has made itself crosses the plane: both become one handle.
-    fn join_where_they_meet(&mut self, workspace: &mut Workspace, own: Paint, vertices: &[SurfaceVertex]) {
-        let Some(twin) = self.made else { return };
-        let document = &mut workspace.document;
-        let is_twins = |vertex: &SurfaceVertex| document.paint()[vertex.index()] == Paint::Handle(twin);
-        if vertices.iter().any(is_twins) {
-            let joined = members(document, twin);
-            document.paint_vertices(joined.into_iter().map(|vertex| (vertex, own)));
-            self.paint = Some(own);
-            self.made = None;
+    /// Takes the paint of a twin that has hardly a vertex off again, because the other side lacks the part.
+    pub(super) fn drop_scraps(&self, workspace: &mut Workspace, own: Paint, before: &Document) {
+        let (Paint::Handle(id), Some(twin), Some(halves)) = (own, self.twin, &self.halves) else {
+            return;
+        };
+        let scraps = members(&workspace.document, twin);
+        let is_apart = self.is_made && halves.state() != State::One;
+        if is_apart && !is_twin(scraps.len(), members(&workspace.document, id).len()) {
+            let former = before.paint();
+            let restored: Vec<(SurfaceVertex, Paint)> =
+                scraps.iter().map(|vertex| (*vertex, former[vertex.index()])).collect();
+            workspace.document.paint_vertices(restored);
+            workspace.refuse(NO_TWIN);
         }
     }
 
     /// Links the twin that was made, once both handles have their vertices.
     pub(super) fn finish(&self, workspace: &mut Workspace, own: Paint) {
         let document = &mut workspace.document;
-        if let (Paint::Handle(id), Some(twin)) = (own, self.made)
+        if let (Paint::Handle(id), Some(twin)) = (own, self.twin)
+            && self.is_made
             && document.handle(id).is_some()
             && document.handle(twin).is_some()
         {

@@ -95,10 +95,12 @@ impl PaintStroke {
         if let Some(other_side) = &mut self.other_side {
             vertices.sort_unstable();
             vertices.dedup();
-            let (opposite, paint) = other_side.of_painted(workspace, self.paint, &vertices);
-            lay(workspace, opposite, paint);
+            for (vertices, paint) in other_side.of_painted(workspace, self.paint, &vertices) {
+                lay(workspace, vertices, paint);
+            }
+        } else {
+            lay(workspace, vertices, self.paint);
         }
-        lay(workspace, vertices, self.paint);
     }
 }
 
@@ -124,6 +126,9 @@ impl Stroke for PaintStroke {
     }
 
     fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
+        if let Some(other_side) = &self.other_side {
+            other_side.drop_scraps(workspace, self.paint, before);
+        }
         tidy_handles(workspace, before);
         if let Some(other_side) = &self.other_side {
             other_side.finish(workspace, self.paint);

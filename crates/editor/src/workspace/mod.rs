@@ -92,5 +92,5 @@ pub(crate) use stiffness::{change_stiffness, clear_stiffness, set_stiffness};
 pub(crate) use stitching::{
     held_parts, merge_held, mirror_held, spared_by_cuts, stitch, take_stitched, take_stitching,
 };
-pub(crate) use symmetry::{set_symmetry, twin_across};
+pub(crate) use symmetry::set_symmetry;
 pub(crate) use work_pose::{carry_corrections, lasting, toggle_work_pose};

@@ -5,12 +5,8 @@
 
 use std::sync::Arc;
 
-use pliant_mesh::SurfaceVertex;
-
 use super::mirror::{mirror_plane, rest_bvh};
-use super::painting::members;
 use super::state::Workspace;
-use crate::document::{HandleId, Paint};
 use crate::jobs::{BothSides, Symmetry};
 
 impl Workspace {
@@ -57,32 +53,4 @@ pub(crate) fn take_symmetry(workspace: &mut Workspace) {
         workspace.refuse("This shape has no plane of symmetry: choose an axis, or paint one side at a time.");
     }
     workspace.both_sides = found;
-}
-
-/// A handle's twin across the plane: its present one, or a new one of all partners of its vertices and these. `None` if
-/// they are on both sides.
-pub(crate) fn twin_across(
-    workspace: &mut Workspace,
-    sides: &BothSides,
-    id: HandleId,
-    painted: &[SurfaceVertex],
-) -> Option<(HandleId, Vec<SurfaceVertex>)> {
-    let document = &mut workspace.document;
-    if let Some(twin) = document.handle(id).and_then(|handle| handle.twin) {
-        return Some((twin.handle, Vec::new()));
-    }
-    let mut all: Vec<SurfaceVertex> = members(document, id);
-    let former = all.clone();
-    all.extend(painted);
-    all.sort_unstable();
-    all.dedup();
-    if sides.are_crossed_by(&all) {
-        return None;
-    }
-    let opposite = sides.opposite(former).filter(|vertex| {
-        let is_handles = matches!(workspace.document.paint[vertex.index()], Paint::Handle(_));
-        !is_handles
-    });
-    let opposite: Vec<SurfaceVertex> = opposite.collect();
-    Some((workspace.document.add_handle(), opposite))
 }

@@ -168,6 +168,25 @@ fn a_handle_across_the_plane_is_one_handle_wherever_the_stroke_begins() {
 }
 
 #[test]
+fn a_part_that_the_other_side_lacks_gets_no_twin_and_a_sentence_says_so() {
+    // A ball beside the body, on its right side alone.
+    let ball = DAffine3::from_scale_rotation_translation(DVec3::splat(0.3), DQuat::IDENTITY, DVec3::new(2.6, 0.0, 0.0));
+    let mut rig = opened(
+        shapes::together(&[body(), shapes::moved(&shapes::icosphere(3), ball)]),
+        Symmetry::Found,
+    );
+    let camera = *rig.editor.view().camera;
+    let ball_px = camera.project(DVec3::new(2.6, 0.0, 0.3), VIEWPORT_PX).unwrap();
+    rig.swipe(&[ball_px, ball_px + DVec2::new(4.0, 2.0)]);
+    rig.drain();
+    let handles = rig.editor.document().handles().to_vec();
+    assert_eq!(handles.len(), 1);
+    assert_eq!(handles[0].twin, None);
+    assert!(painted(&rig, Paint::Handle(handles[0].id)).iter().all(|p| p.x > 2.0));
+    assert!(rig.editor.view().problem.unwrap().contains("no part like this one"));
+}
+
+#[test]
 fn an_aborted_stroke_leaves_nothing_on_either_side() {
     let mut rig = opened(body(), Symmetry::Found);
     let before = Fingerprint::of(rig.editor.document());

@@ -14,6 +14,7 @@ use crate::input::{Button, Modifiers, Pointer};
 use crate::jobs::{Activity, JobKind};
 use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
+use crate::tool::halves::{Half, Halves, NO_TWIN, State, is_twin};
 use crate::tool::limb::{Limb, NewLimb, hover, limb_under};
 use crate::tool::overlay::Lit;
 use crate::view::{ControlShape, Cursor, Pick, Readout, View};
@@ -392,10 +393,19 @@ fn paint_limb(document: &mut Document, id: HandleId, own: &[SurfaceVertex], free
 /// With symmetry, gives a limb that has become a handle its twin on the other side, unless it is on both sides of the
 /// plane. Twins of its parent and children are the twin's.
 fn make_posed_twin(workspace: &mut Workspace, id: HandleId, limb: &NewLimb, freed: &[SurfaceVertex]) {
-    let Some(sides) = workspace.both_sides().cloned() else {
+    let (Some(sides), Some(model)) = (workspace.both_sides().cloned(), workspace.model().cloned()) else {
         return;
     };
-    if sides.are_crossed_by(&limb.own) {
+    let mut halves = Halves::of_nothing(Arc::clone(&sides), model, false);
+    halves.give(&limb.own);
+    if halves.state() == State::One {
+        return;
+    }
+    let around = halves.around(&limb.own).into_iter();
+    let twins = around.filter(|(_, half)| *half == Half::Twin);
+    let mut own: Vec<SurfaceVertex> = twins.map(|(vertex, _)| vertex).collect();
+    if !is_twin(own.len(), limb.own.len()) {
+        workspace.refuse(NO_TWIN);
         return;
     }
     let twin_of = |workspace: &Workspace, id: HandleId| Some(workspace.document.handle(id)?.twin?.handle);
@@ -405,17 +415,17 @@ fn make_posed_twin(workspace: &mut Workspace, id: HandleId, limb: &NewLimb, free
         .iter()
         .filter_map(|child| twin_of(workspace, *child))
         .collect();
-    let across = |vertices: &[SurfaceVertex]| -> Vec<SurfaceVertex> {
-        let is_open = |vertex: &SurfaceVertex| {
-            let may_change = match workspace.document.paint()[vertex.index()] {
-                Paint::Handle(other) => Some(other) == parent && other != id,
-                _ => true,
-            };
-            may_change && workspace.vertex_access.may_be_painted(vertex.index())
+    let is_open = |vertex: &SurfaceVertex, may_be_own: bool| {
+        let may_change = match workspace.document.paint()[vertex.index()] {
+            Paint::Handle(other) if other == id => may_be_own,
+            Paint::Handle(other) => Some(other) == parent,
+            _ => true,
         };
-        sides.opposite(vertices.to_vec()).filter(is_open).collect()
+        may_change && workspace.vertex_access.may_be_painted(vertex.index())
     };
-    let (own, freed) = (across(&limb.own), across(freed));
+    own.retain(|vertex| is_open(vertex, true));
+    let freed = sides.opposite(freed.to_vec()).filter(|vertex| is_open(vertex, false));
+    let freed: Vec<SurfaceVertex> = freed.collect();
     if own.is_empty() {
         return;
     }
