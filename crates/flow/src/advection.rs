@@ -14,11 +14,12 @@ use glam::DVec2;
 use pliant_mesh::{Cancel, Cancelled};
 use rayon::prelude::*;
 
+use crate::domain::Place;
 use crate::fluid::Fluid;
 use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
-use crate::trace::{BLOCK, Place};
+use crate::trace::BLOCK;
 
 /// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
 pub(crate) type Dye = [f64; 4];

@@ -64,6 +64,12 @@ impl Chart {
         [-of_1 - of_2, of_1, of_2]
     }
 
+    /// The vector along which the three barycentric coordinates change by `rates`.
+    #[inline]
+    pub fn along(&self, rates: [f64; 3]) -> DVec2 {
+        DVec2::new(self.base * rates[1] + self.apex.x * rates[2], self.apex.y * rates[2])
+    }
+
     /// The gradient of the linear function with these values at the corners, times the area.
     #[inline]
     pub fn gradient_area(&self, values: [f64; 3]) -> DVec2 {

@@ -7,6 +7,7 @@ use glam::DVec2;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
+use crate::crossings::Crossings;
 use crate::hinges::{Hinges, WALL, corner_at, last, next};
 use crate::plane::{rotation_between, small_rotation, turned, turned_back};
 
@@ -141,16 +142,16 @@ impl Fans {
         &self,
         vertex: usize,
         (direction, angle, place): (DVec2, f64, usize),
-        hinges: &Hinges,
+        crossings: &Crossings,
         charts: &[Chart],
     ) -> Option<Way> {
         let corners = self.corners(vertex);
         let (&first, &end) = (corners.first()?, corners.last()?);
         let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
         let (corner, start) = (corners[place], starts[place]);
-        let next = match starts.get(place + 1) {
-            Some(next) => *next,
-            None if hinges.after(end) == WALL => {
+        let until = match starts.get(place + 1) {
+            Some(until) => *until,
+            None if crossings.beside(next(end)) == WALL => {
                 let angle_there = charts[end as usize / 3].angle(end as usize % 3);
                 if angle - start > angle_there {
                     return self.along_border(vertex, direction, (first, end), charts);
@@ -160,7 +161,7 @@ impl Fans {
             None => TAU,
         };
         // Angles at the vertex are scaled. The triangle's rotation is that of the corner's middle.
-        let off_middle = angle - 0.5 * (start + next);
+        let off_middle = angle - 0.5 * (start + until);
         let unscaled = small_rotation(off_middle * (self.scales[vertex].recip() - 1.0));
         Some(Way {
             corner,

@@ -8,12 +8,13 @@ use pliant_mesh::{SurfaceVertex, face_normal};
 use rayon::prelude::*;
 
 use crate::chart::Chart;
+use crate::crossings::Crossings;
+use crate::domain::Domain;
 use crate::fans::Fans;
 use crate::hinges::Hinges;
 use crate::plane::turned;
 use crate::sheets::Sheets;
 use crate::sums::{CHUNK, sum, sums};
-use crate::trace::Domain;
 
 /// A surface, laid out.
 #[derive(Debug)]
@@ -43,7 +44,11 @@ impl<'a> Fluid<'a> {
         let [lengths] = sum(charts.len(), |t| [(0..3).map(|k| charts[t].edge(k).length()).sum()]);
         let mean_edge = lengths / (3 * charts.len()).max(1) as f64;
         Self {
-            domain: Domain { charts, hinges, fans },
+            domain: Domain {
+                crossings: Crossings::of(&hinges, &charts),
+                charts,
+                fans,
+            },
             masses,
             mean_edge,
             sheets,

@@ -37,6 +37,8 @@
 mod advection;
 mod chart;
 mod conservation;
+mod crossings;
+mod domain;
 mod error;
 mod fans;
 mod flow;
@@ -48,6 +50,7 @@ mod plane;
 mod projection;
 mod settings;
 mod sheets;
+mod slide;
 mod sums;
 mod trace;
 mod viscosity;

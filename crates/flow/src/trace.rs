@@ -1,71 +1,29 @@
 //! Straight ways across triangles.
 //!
-//! At an edge the triangle beside is unfolded into the plane, so that the way goes on straight and vectors are carried
-//! along it without turning (parallel transport). At a border a way slides along the border.
+//! At an edge the triangle beside is unfolded into the plane, so that the way goes straight on and vectors are carried
+//! along it without turning (parallel transport). A way is given by the barycentric coordinates of its end and by their
+//! change along it: both go linearly from one triangle's plane to the next one's, so a crossing takes no division and
+//! reads one line of memory. At a border a way slides along the border (`slide`).
 
 use glam::DVec2;
 
-use crate::chart::Chart;
-use crate::fans::Fans;
-use crate::hinges::{Hinges, WALL, last, next};
+use crate::domain::{Domain, MOST_EDGES, Place};
+use crate::hinges::WALL;
 use crate::plane::{self, conjugate, turned, turned_back};
+use crate::slide::OnBorder;
 
 /// The most ways that are traced at a time.
 pub(crate) const BLOCK: usize = 64;
 
-/// A way ends after this many edges. Only a velocity far above an edge a step, or a pile of needles, comes so far.
-const MOST_EDGES: usize = 1024;
-
-/// A point on the surface, and the rotation of vectors that were carried to it.
+/// The beginning of a way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub triangle: u32,
-    /// Barycentric coordinates: not negative, with the sum 1.
-    pub weights: [f64; 3],
-    /// From the tangent plane of the vertex at the way's beginning to the triangle's plane.
-    pub rotation: DVec2,
-}
-
-/// The surface as the flow sees it: triangles in planes of their own, and how planes fit together.
-#[derive(Debug)]
-pub(crate) struct Domain {
-    pub charts: Vec<Chart>,
-    pub hinges: Hinges,
-    pub fans: Fans,
-}
-
-/// A way that has come to a point.
-#[derive(Clone, Copy, Default)]
-struct Walk {
-    triangle: u32,
-    weights: [f64; 3],
-    /// The rest of the way.
-    left: DVec2,
-    /// The change of the weights along it.
-    rates: [f64; 3],
+struct Start {
+    /// The corner of the triangle that it enters.
+    corner: u32,
+    /// The way in the plane of the triangle.
+    way: DVec2,
+    /// From the tangent plane of its vertex to the triangle's plane.
     rotation: DVec2,
-}
-
-impl Walk {
-    /// Goes a share of the way that is left.
-    #[inline]
-    fn advance(&mut self, share: f64) {
-        for (weight, rate) in self.weights.iter_mut().zip(self.rates) {
-            *weight = (*weight + share * rate).max(0.0);
-        }
-        self.left *= 1.0 - share;
-    }
-
-    /// The point to which it has come.
-    #[inline]
-    fn end(&self) -> Place {
-        let sum: f64 = self.weights.iter().sum();
-        Place {
-            triangle: self.triangle,
-            weights: self.weights.map(|weight| weight / sum),
-            rotation: self.rotation,
-        }
-    }
 }
 
 impl Domain {
@@ -84,157 +42,112 @@ impl Domain {
         for (i, (sector, &angle)) in sectors.iter_mut().zip(&angles).enumerate().take(count) {
             *sector = self.fans.sector(first + i, angle);
         }
-        let mut walks = [None; BLOCK];
-        for (i, walk) in walks.iter_mut().enumerate().take(count) {
-            *walk = self.begin(first + i, (displacements[i], angles[i], sectors[i]));
+        let mut starts = [None; BLOCK];
+        for (i, start) in starts.iter_mut().enumerate().take(count) {
+            *start = self.start(first + i, (displacements[i], angles[i], sectors[i]));
         }
-        for (place, walk) in places.iter_mut().zip(walks).take(count) {
-            *place = walk.map(|walk| self.walk(walk));
+        for (place, start) in places.iter_mut().zip(starts).take(count) {
+            *place = start.map(|start| self.walk(start));
         }
     }
 
     /// The beginning of the way from a vertex along a displacement, at an angle and in a sector of its fan.
     #[inline]
-    fn begin(&self, vertex: usize, (displacement, angle, sector): (DVec2, f64, usize)) -> Option<Walk> {
+    fn start(&self, vertex: usize, (displacement, angle, sector): (DVec2, f64, usize)) -> Option<Start> {
         let own = *self.fans.corners(vertex).first()?;
         let way = match displacement == DVec2::ZERO {
             true => None,
             false => self
                 .fans
-                .way(vertex, (displacement, angle, sector), &self.hinges, &self.charts),
+                .way(vertex, (displacement, angle, sector), &self.crossings, &self.charts),
         };
-        let (corner, left) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
+        let (corner, way) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
         let k = corner as usize % 3;
-        let mut weights = [0.0; 3];
-        weights[k] = 1.0;
-        let rates = self.charts[corner as usize / 3].rates(left);
+        let rates = self.charts[corner as usize / 3].rates(way);
         let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
-        Some(Walk {
-            triangle: corner / 3,
-            weights,
-            left,
-            rates,
+        Some(Start {
+            corner,
+            way,
             rotation: conjugate(self.fans.rotation_along(corner, after, before)),
         })
     }
 
     /// Walks to the end.
-    fn walk(&self, mut walk: Walk) -> Place {
-        // The edge through which the triangle was entered: rounding must not lead back through it.
-        let mut entered = None;
-        for _ in 0..MOST_EDGES {
-            let Some((k, share)) = exit(walk.weights, walk.rates, entered) else {
-                walk.advance(1.0);
-                break;
-            };
-            walk.advance(share);
-            walk.weights[k] = 0.0;
-            let edge = 3 * walk.triangle + k as u32;
-            entered = match self.hinges.beside(edge) {
-                WALL => self.slide(&mut walk, edge),
-                other => Some(self.cross(&mut walk, edge, other)),
+    #[inline]
+    fn walk(&self, start: Start) -> Place {
+        const LAST: [usize; 3] = [2, 0, 1];
+        const NEXT: [usize; 3] = [1, 2, 0];
+        let mut triangle = start.corner / 3;
+        let rates = self.charts[triangle as usize].rates(start.way);
+        // The coordinate of the corner opposite the edge through which the triangle was entered, and those of the next
+        // and the last corner: at the way's end, and its change along the way.
+        let mut m = start.corner as usize % 3;
+        let mut far = DVec2::new(1.0 + rates[m], rates[m]);
+        let mut after = DVec2::splat(rates[NEXT[m]]);
+        let mut before = DVec2::splat(rates[LAST[m]]);
+        // A way that begins at a corner leaves by the edge opposite.
+        let (mut k, mut out, mut kept) = (m, far, [after, before]);
+        let mut crossed = 0;
+        while out.x < 0.0 {
+            let (other, [to_next, to_last, across]) = self.crossings.across(triangle, k);
+            if other == WALL || crossed == MOST_EDGES {
+                let share = if out.y < 0.0 { out.x / out.y } else { 0.0 };
+                let mut weights = [0.0; 3];
+                weights[NEXT[k]] = (kept[0].x - share * kept[0].y).max(0.0);
+                weights[LAST[k]] = (kept[1].x - share * kept[1].y).max(0.0);
+                let way = self.way_there(triangle, m, [far, after, before]);
+                let rotation = turn(&start, way);
+                if other != WALL {
+                    return Place::at(triangle, weights, rotation);
+                }
+                let edge = 3 * triangle + k as u32;
+                let sum = weights.iter().sum::<f64>();
+                let weights = weights.map(|weight| weight / sum);
+                return self.slide(
+                    OnBorder {
+                        edge,
+                        weights,
+                        rotation,
+                    },
+                    way * share,
+                );
+            }
+            crossed += 1;
+            (triangle, m) = (other / 3, other as usize % 3);
+            // The edge's ends change their roles.
+            before = kept[0] + out * to_next;
+            after = kept[1] + out * to_last;
+            far = out * across;
+            // The side of the opposite corner on which the way passes.
+            let is_first = after.x < 0.0 && (before.x >= 0.0 || after.perp_dot(before) >= 0.0);
+            (k, out, kept) = if is_first {
+                (NEXT[m], after, [before, far])
+            } else {
+                (LAST[m], before, [far, after])
             };
         }
-        walk.end()
-    }
-
-    /// Goes over from the triangle of `edge` to that of `other`; returns the edge's number there.
-    #[inline]
-    fn cross(&self, walk: &mut Walk, edge: u32, other: u32) -> usize {
-        let turn = self.turn(edge, other);
-        let (k, m) = (edge as usize % 3, other as usize % 3);
         let mut weights = [0.0; 3];
-        weights[(m + 1) % 3] = walk.weights[(k + 2) % 3];
-        weights[(m + 2) % 3] = walk.weights[(k + 1) % 3];
-        walk.triangle = other / 3;
-        walk.weights = weights;
-        walk.left = turned(turn, walk.left);
-        walk.rates = self.charts[other as usize / 3].rates(walk.left);
-        walk.rotation = turned(turn, walk.rotation);
-        m
+        (weights[m], weights[NEXT[m]], weights[LAST[m]]) = (far.x, after.x, before.x);
+        let rotation = match crossed {
+            0 => start.rotation,
+            _ => turn(&start, self.way_there(triangle, m, [far, after, before])),
+        };
+        Place::at(triangle, weights, rotation)
     }
 
-    /// The rotation from the plane of the triangle of `edge` to that of `other`, the same edge beside.
+    /// A whole way in the plane of a triangle, from the changes of the coordinates of corner `m`, the next and the last.
     #[inline]
-    pub fn turn(&self, edge: u32, other: u32) -> DVec2 {
-        let vector = |edge: u32| self.charts[edge as usize / 3].edge(edge as usize % 3);
-        // Both have the same length.
-        let (from, to) = (vector(edge), -vector(other));
-        turned_back(from, to) / from.length_squared()
-    }
-
-    /// Follows the border, on which the walk stands at `edge`. Where the border turns, the way turns with it.
-    fn slide(&self, walk: &mut Walk, mut edge: u32) -> Option<usize> {
-        let along = self.charts[edge as usize / 3].edge(edge as usize % 3);
-        let is_forward = walk.left.dot(along) > 0.0;
-        let mut left = walk.left.dot(along).abs() / along.length();
-        (walk.left, walk.rates) = (DVec2::ZERO, [0.0; 3]);
-        for _ in 0..MOST_EDGES {
-            let length = self.charts[edge as usize / 3].edge(edge as usize % 3).length();
-            // The walk stands on the edge between `from`, which it leaves, and `to`.
-            let ends = [next(edge) as usize % 3, last(edge) as usize % 3];
-            let [from, to] = if is_forward { ends } else { [ends[1], ends[0]] };
-            let way = walk.weights[from] * length;
-            if left <= way {
-                let share = left / length;
-                walk.weights[from] -= share;
-                walk.weights[to] += share;
-                return None;
-            }
-            left -= way;
-            walk.weights = [0.0; 3];
-            walk.weights[to] = 1.0;
-            edge = self.around(walk, 3 * walk.triangle + to as u32, is_forward);
-        }
-        None
-    }
-
-    /// Carries a walk that stands on the vertex of `corner` around it to the border's other edge, and returns that.
-    fn around(&self, walk: &mut Walk, mut corner: u32, is_forward: bool) -> u32 {
-        for _ in 0..MOST_EDGES {
-            // Forward the border comes counterclockwise along an edge and leaves at the fan's clockwise end.
-            let crossed = if is_forward { last(corner) } else { next(corner) };
-            let other = self.hinges.beside(crossed);
-            if other == WALL {
-                return crossed;
-            }
-            self.cross(walk, crossed, other);
-            corner = if is_forward { last(other) } else { next(other) };
-            walk.weights = [0.0; 3];
-            walk.weights[corner as usize % 3] = 1.0;
-        }
-        corner
-    }
-
-    /// The value of a vector field, given in the vertices' tangent planes, at a place, carried back to the tangent
-    /// plane of the vertex from which the place was reached.
-    #[inline]
-    pub fn vector_at(&self, place: &Place, vertices: [usize; 3], field: &[DVec2]) -> DVec2 {
-        let mut sum = DVec2::ZERO;
-        for k in 0..3 {
-            let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| place.weights[other]);
-            let rotation = self.fans.rotation_along(3 * place.triangle + k as u32, after, before);
-            sum += turned_back(rotation, field[vertices[k]]) * place.weights[k];
-        }
-        turned_back(place.rotation, sum)
+    fn way_there(&self, triangle: u32, m: usize, [far, after, before]: [DVec2; 3]) -> DVec2 {
+        let mut rates = [0.0; 3];
+        (rates[m], rates[(m + 1) % 3], rates[(m + 2) % 3]) = (far.y, after.y, before.y);
+        self.charts[triangle as usize].along(rates)
     }
 }
 
-/// The edge through which a point leaves a triangle before its barycentric coordinates have changed by `rates`, and the
-/// share of the way to it.
+/// The rotation from the tangent plane in which a way begins to that in which it is `way`.
 #[inline]
-fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> Option<(usize, f64)> {
-    let mut found = None;
-    let mut least = 1.0;
-    for k in 0..3 {
-        if Some(k) != entered && weights[k] + rates[k] < 0.0 {
-            let share = weights[k] / -rates[k];
-            if share < least {
-                (found, least) = (Some(k), share);
-            }
-        }
-    }
-    found.map(|k| (k, least))
+fn turn(start: &Start, way: DVec2) -> DVec2 {
+    turned(turned_back(start.way, way).normalize_or(DVec2::X), start.rotation)
 }
 
 #[cfg(test)]
@@ -246,6 +159,10 @@ mod tests {
     use pliant_mesh::{Model, shapes};
 
     use super::*;
+    use crate::chart::Chart;
+    use crate::crossings::Crossings;
+    use crate::fans::Fans;
+    use crate::hinges::{Hinges, last};
 
     fn domain(model: &Model) -> Domain {
         let (surface, topology) = (&model.surface, &model.topology);
@@ -253,8 +170,11 @@ mod tests {
             .map(|t| Chart::of(surface.corners(t)))
             .collect();
         let hinges = Hinges::of(surface, topology);
-        let fans = Fans::of(surface, topology, &hinges, &charts);
-        Domain { charts, hinges, fans }
+        Domain {
+            fans: Fans::of(surface, topology, &hinges, &charts),
+            crossings: Crossings::of(&hinges, &charts),
+            charts,
+        }
     }
 
     fn traced(domain: &Domain, vertex: usize, displacement: DVec2) -> Option<Place> {
@@ -322,14 +242,17 @@ mod tests {
         ] {
             let edge = last(first);
             let along = domain.charts[edge as usize / 3].edge(edge as usize % 3).normalize();
-            let mut walk = Walk {
-                triangle: first / 3,
-                left: along * length,
-                ..Walk::default()
-            };
-            walk.weights[first as usize % 3] = 1.0;
-            domain.slide(&mut walk, edge);
-            let place = walk.end();
+            let mut weights = [0.0; 3];
+            weights[first as usize % 3] = 1.0;
+            let rotation = DVec2::X;
+            let place = domain.slide(
+                OnBorder {
+                    edge,
+                    weights,
+                    rotation,
+                },
+                along * length,
+            );
             assert!(position(&model, &place).distance(end) < 1e-9, "{length}");
         }
     }
