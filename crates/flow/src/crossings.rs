@@ -42,14 +42,14 @@ impl Crossings {
     }
 
     /// The edge of the triangle beside the edge opposite `corner`, or [`WALL`].
-    #[inline]
+    #[inline(always)]
     pub fn beside(&self, corner: u32) -> u32 {
         self.cells[corner as usize / 3].beside[corner as usize % 3]
     }
 
     /// The edge beside edge `k` of a triangle, or [`WALL`], and the barycentric coordinates of corner `k` in the triangle
     /// there: those of the next and the last corner of the triangle here, and that of the corner across the edge.
-    #[inline]
+    #[inline(always)]
     pub fn across(&self, triangle: u32, k: usize) -> (u32, [f64; 3]) {
         let cell = &self.cells[triangle as usize];
         let DVec2 { x: next, y: last } = cell.unfolded[k];

@@ -51,17 +51,4 @@ impl Domain {
         let (from, to) = (vector(edge), -vector(other));
         turned_back(from, to) / from.length_squared()
     }
-
-    /// The value of a vector field, given in the vertices' tangent planes, at a place, carried back to the tangent
-    /// plane of the vertex from which the place was reached.
-    #[inline]
-    pub fn vector_at(&self, place: &Place, vertices: [usize; 3], field: &[DVec2]) -> DVec2 {
-        let mut sum = DVec2::ZERO;
-        for k in 0..3 {
-            let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| place.weights[other]);
-            let rotation = self.fans.rotation_along(3 * place.triangle + k as u32, after, before);
-            sum += turned_back(rotation, field[vertices[k]]) * place.weights[k];
-        }
-        turned_back(place.rotation, sum)
-    }
 }

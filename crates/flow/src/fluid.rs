@@ -71,19 +71,19 @@ impl<'a> Fluid<'a> {
     }
 
     /// The component of a vertex.
-    #[inline]
+    #[inline(always)]
     pub fn component(&self, vertex: usize) -> usize {
         self.sheets.topology.component(SurfaceVertex(vertex as u32)) as usize
     }
 
     /// The component of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn component_of_triangle(&self, triangle: usize) -> usize {
         self.component(self.corners(triangle)[0])
     }
 
     /// The vertices of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [usize; 3] {
         self.sheets.surface.triangles[triangle].map(|vertex| vertex.index())
     }

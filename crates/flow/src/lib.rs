@@ -46,6 +46,7 @@ mod fluid;
 mod forces;
 mod held;
 mod hinges;
+mod lanes;
 mod plane;
 mod projection;
 mod settings;

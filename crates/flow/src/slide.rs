@@ -17,6 +17,17 @@ pub(crate) struct OnBorder {
     pub rotation: DVec2,
 }
 
+impl OnBorder {
+    /// A place that is on a border's edge.
+    pub fn at(place: Place, edge: u32) -> Self {
+        Self {
+            edge,
+            weights: place.weights,
+            rotation: place.rotation,
+        }
+    }
+}
+
 impl Domain {
     /// Follows the border as far as a way that is left goes along it. Where the border turns, the way turns with it.
     pub fn slide(&self, mut here: OnBorder, way: DVec2) -> Place {

@@ -4,150 +4,316 @@
 //! along it without turning (parallel transport). A way is given by the barycentric coordinates of its end and by their
 //! change along it: both go linearly from one triangle's plane to the next one's, so a crossing takes no division and
 //! reads one line of memory. At a border a way slides along the border (`slide`).
+//!
+//! Many ways are traced at a time, one thing after another for all of them: arithmetic goes in the processor's vectors,
+//! and it waits for several places of memory at once.
 
 use glam::DVec2;
 
 use crate::domain::{Domain, MOST_EDGES, Place};
 use crate::hinges::WALL;
+use crate::lanes::{LANES, Lanes, Vectors, change, put, turn, vector};
 use crate::plane::{self, conjugate, turned, turned_back};
 use crate::slide::OnBorder;
 
-/// The most ways that are traced at a time.
-pub(crate) const BLOCK: usize = 64;
+const NEXT: [usize; 3] = [1, 2, 0];
+const LAST: [usize; 3] = [2, 0, 1];
 
-/// The beginning of a way.
-#[derive(Clone, Copy, Debug)]
-struct Start {
-    /// The corner of the triangle that it enters.
-    corner: u32,
-    /// The way in the plane of the triangle.
-    way: DVec2,
-    /// From the tangent plane of its vertex to the triangle's plane.
-    rotation: DVec2,
+/// The beginnings of ways.
+struct Starts {
+    /// The corners of the triangles that they enter; [`WALL`] at bare vertices.
+    corners: [u32; LANES],
+    /// The ways in the planes of the triangles.
+    ways: Vectors,
+    /// The changes of the coordinates of the ways' own corners, the next and the last ones.
+    rates: [Lanes; 3],
+    /// From the tangent planes of the vertices to the triangles' planes.
+    rotations: Vectors,
+}
+
+/// The ends of ways.
+pub(crate) struct Ends {
+    pub triangles: [u32; LANES],
+    /// Barycentric coordinates: not negative, with the sum 1; all zero for a bare vertex.
+    pub weights: [Lanes; 3],
+    /// From the tangent planes of the vertices at the ways' beginnings to the triangles' planes.
+    pub rotations: Vectors,
+}
+
+impl Ends {
+    pub fn new() -> Self {
+        Self {
+            triangles: [0; LANES],
+            weights: [[0.0; LANES]; 3],
+            rotations: [[1.0; LANES], [0.0; LANES]],
+        }
+    }
+}
+
+/// A way that has come into a triangle.
+#[derive(Clone, Copy)]
+struct Walk {
+    triangle: u32,
+    /// The corner opposite the edge through which the triangle was entered, or that at which the way begins.
+    corner: usize,
+    /// The coordinates of that corner, the next and the last one: at the way's end, and their changes along the way.
+    coordinates: [DVec2; 3],
+    has_crossed: bool,
+}
+
+/// Why a walk ended.
+enum End {
+    Inside(Walk),
+    /// At the edge of this number in its triangle.
+    AtEdge(Walk, usize),
 }
 
 impl Domain {
-    /// The ends of the ways from the vertices from `first` on, as many as there are `displacements`, at most [`BLOCK`],
-    /// each a vector in the tangent plane of its vertex; `None` for a bare vertex.
-    ///
-    /// One thing after another for all of them, so that the processor works at several ways at a time: each thing waits
-    /// for the one before, for memory or for a root.
-    pub fn trace(&self, first: usize, displacements: &[DVec2], places: &mut [Option<Place>; BLOCK]) {
-        let count = displacements.len().min(BLOCK);
-        let mut angles = [0.0; BLOCK];
-        for (angle, &displacement) in angles.iter_mut().zip(displacements) {
-            *angle = plane::angle(displacement);
-        }
-        let mut sectors = [0; BLOCK];
-        for (i, (sector, &angle)) in sectors.iter_mut().zip(&angles).enumerate().take(count) {
-            *sector = self.fans.sector(first + i, angle);
-        }
-        let mut starts = [None; BLOCK];
-        for (i, start) in starts.iter_mut().enumerate().take(count) {
-            *start = self.start(first + i, (displacements[i], angles[i], sectors[i]));
-        }
-        for (place, start) in places.iter_mut().zip(starts).take(count) {
-            *place = start.map(|start| self.walk(start));
-        }
-    }
-
-    /// The beginning of the way from a vertex along a displacement, at an angle and in a sector of its fan.
-    #[inline]
-    fn start(&self, vertex: usize, (displacement, angle, sector): (DVec2, f64, usize)) -> Option<Start> {
-        let own = *self.fans.corners(vertex).first()?;
-        let way = match displacement == DVec2::ZERO {
-            true => None,
-            false => self
-                .fans
-                .way(vertex, (displacement, angle, sector), &self.crossings, &self.charts),
+    /// The ends of the ways from the vertices from `first` on, `count` of them, along displacements in the tangent
+    /// planes of these vertices. Further displacements must be numbers.
+    #[inline(always)]
+    pub fn trace(&self, first: usize, count: usize, displacements: &Vectors, ends: &mut Ends) {
+        let mut starts = Starts {
+            corners: [WALL; LANES],
+            ways: *displacements,
+            rates: [[0.0; LANES]; 3],
+            rotations: [[1.0; LANES], [0.0; LANES]],
         };
-        let (corner, way) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
-        let k = corner as usize % 3;
-        let rates = self.charts[corner as usize / 3].rates(way);
-        let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
-        Some(Start {
-            corner,
-            way,
-            rotation: conjugate(self.fans.rotation_along(corner, after, before)),
-        })
+        self.start(first, count, &mut starts);
+        let mut arrived: [Lanes; 3] = [[0.0; LANES]; 3];
+        let mut there: Vectors = starts.ways;
+        // Ways that slid along a border are finished already.
+        let (mut slid, mut slid_count) = ([None; LANES], 0);
+        for i in 0..count {
+            ends.triangles[i] = 0;
+            if starts.corners[i] == WALL {
+                continue;
+            }
+            match self.walk(starts.corners[i], [0, 1, 2].map(|k| starts.rates[k][i])) {
+                End::Inside(walk) => {
+                    ends.triangles[i] = walk.triangle;
+                    for (k, coordinate) in [walk.corner, NEXT[walk.corner], LAST[walk.corner]]
+                        .into_iter()
+                        .zip(walk.coordinates)
+                    {
+                        arrived[k][i] = coordinate.x;
+                    }
+                    if walk.has_crossed {
+                        put(&mut there, i, self.way_there(&walk));
+                    }
+                }
+                End::AtEdge(walk, k) => {
+                    let start = (vector(&starts.ways, i), vector(&starts.rotations, i));
+                    slid[slid_count] = Some((i, self.at_edge(&walk, k, start)));
+                    slid_count += 1;
+                }
+            }
+        }
+        change(&mut there, |i, there| {
+            let turn = turned_back(vector(&starts.ways, i), there);
+            let length = turn.length();
+            let turn = if length > 0.0 { turn / length } else { DVec2::X };
+            turned(turn, vector(&starts.rotations, i))
+        });
+        ends.rotations = there;
+        for i in 0..LANES {
+            let inside = [0, 1, 2].map(|k| if arrived[k][i] > 0.0 { arrived[k][i] } else { 0.0 });
+            let sum = inside[0] + inside[1] + inside[2];
+            let inverse = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+            for k in 0..3 {
+                ends.weights[k][i] = inside[k] * inverse;
+            }
+        }
+        for (i, place) in slid.into_iter().take(slid_count).flatten() {
+            ends.triangles[i] = place.triangle;
+            for (weights, weight) in ends.weights.iter_mut().zip(place.weights) {
+                weights[i] = weight;
+            }
+            put(&mut ends.rotations, i, place.rotation);
+        }
     }
 
-    /// Walks to the end.
-    #[inline]
-    fn walk(&self, start: Start) -> Place {
-        const LAST: [usize; 3] = [2, 0, 1];
-        const NEXT: [usize; 3] = [1, 2, 0];
-        let mut triangle = start.corner / 3;
-        let rates = self.charts[triangle as usize].rates(start.way);
-        // The coordinate of the corner opposite the edge through which the triangle was entered, and those of the next
-        // and the last corner: at the way's end, and its change along the way.
-        let mut m = start.corner as usize % 3;
-        let mut far = DVec2::new(1.0 + rates[m], rates[m]);
-        let mut after = DVec2::splat(rates[NEXT[m]]);
-        let mut before = DVec2::splat(rates[LAST[m]]);
+    /// Begins ways along the displacements that `starts.ways` has.
+    #[inline(always)]
+    fn start(&self, first: usize, count: usize, starts: &mut Starts) {
+        let Starts {
+            corners,
+            ways,
+            rates,
+            rotations,
+        } = starts;
+        let mut angles = [0.0; LANES];
+        for (i, angle) in angles.iter_mut().enumerate() {
+            *angle = plane::angle(vector(ways, i));
+        }
+        // By how much the direction in the triangle is turned more than the middle of its corner.
+        let (mut turns, mut twists) = ([0.0; LANES], [0.0; LANES]);
+        let mut layouts = [[1.0; LANES], [0.0; LANES], [1.0; LANES]];
+        let (mut others, mut other_count) = ([None; LANES], 0);
+        for i in 0..count {
+            let vertex = first + i;
+            let Some(wedge) = self.fans.wedge(vertex, angles[i]) else {
+                continue;
+            };
+            let mut corner = wedge.corner;
+            if wedge.is_last_of_open || vector(ways, i) == DVec2::ZERO {
+                let way = self
+                    .fans
+                    .way_at_border(vertex, vector(ways, i), angles[i], &self.charts);
+                corner = way.corner;
+                others[other_count] = Some((i, way.direction));
+                other_count += 1;
+            }
+            corners[i] = corner;
+            put(rotations, i, self.fans.rotation(corner));
+            twists[i] = self.fans.twist(corner);
+            turns[i] = (angles[i] - wedge.middle) * self.fans.bend(vertex);
+            let layout = self.charts[corner as usize / 3].layout();
+            (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
+        }
+        change(ways, |i, way| turned_back(vector(rotations, i), way));
+        turn(ways, &turns);
+        for (i, way) in others.into_iter().take(other_count).flatten() {
+            put(ways, i, way);
+        }
+        let mut shares = [0.0; LANES];
+        for i in 0..LANES {
+            // The chart's rates.
+            let of_2 = ways[1][i] / layouts[2][i];
+            let of_1 = (ways[0][i] - layouts[1][i] * of_2) / layouts[0][i];
+            let of_0 = -of_1 - of_2;
+            let k = corners[i] % 3;
+            let pick = |a: f64, b: f64, c: f64| {
+                if k == 0 {
+                    a
+                } else if k == 1 {
+                    b
+                } else {
+                    c
+                }
+            };
+            let [after, before] = [pick(of_1, of_2, of_0), pick(of_2, of_0, of_1)];
+            (rates[0][i], rates[1][i], rates[2][i]) = (pick(of_0, of_1, of_2), after, before);
+            let [after, before] = [after, before].map(|rate| if rate > 0.0 { rate } else { 0.0 });
+            let both = after + before;
+            let share = before / both - 0.5;
+            shares[i] = if both > 0.0 { share * twists[i] } else { 0.0 };
+        }
+        turn(rotations, &shares);
+        change(rotations, |_, rotation| conjugate(rotation));
+    }
+
+    /// Walks to the end of a way that begins at a corner.
+    #[inline(always)]
+    fn walk(&self, corner: u32, rates: [f64; 3]) -> End {
+        let [far, after, before] = rates;
+        let mut walk = Walk {
+            triangle: corner / 3,
+            corner: corner as usize % 3,
+            coordinates: [DVec2::new(1.0 + far, far), DVec2::splat(after), DVec2::splat(before)],
+            has_crossed: false,
+        };
         // A way that begins at a corner leaves by the edge opposite.
-        let (mut k, mut out, mut kept) = (m, far, [after, before]);
+        let (mut k, [mut out, mut next, mut last]) = (walk.corner, walk.coordinates);
         let mut crossed = 0;
         while out.x < 0.0 {
-            let (other, [to_next, to_last, across]) = self.crossings.across(triangle, k);
+            let (other, [to_next, to_last, across]) = self.crossings.across(walk.triangle, k);
             if other == WALL || crossed == MOST_EDGES {
-                let share = if out.y < 0.0 { out.x / out.y } else { 0.0 };
-                let mut weights = [0.0; 3];
-                weights[NEXT[k]] = (kept[0].x - share * kept[0].y).max(0.0);
-                weights[LAST[k]] = (kept[1].x - share * kept[1].y).max(0.0);
-                let way = self.way_there(triangle, m, [far, after, before]);
-                let rotation = turn(&start, way);
-                if other != WALL {
-                    return Place::at(triangle, weights, rotation);
-                }
-                let edge = 3 * triangle + k as u32;
-                let sum = weights.iter().sum::<f64>();
-                let weights = weights.map(|weight| weight / sum);
-                return self.slide(
-                    OnBorder {
-                        edge,
-                        weights,
-                        rotation,
-                    },
-                    way * share,
-                );
+                return End::AtEdge(walk, k);
             }
             crossed += 1;
-            (triangle, m) = (other / 3, other as usize % 3);
+            let m = other as usize % 3;
             // The edge's ends change their roles.
-            before = kept[0] + out * to_next;
-            after = kept[1] + out * to_last;
-            far = out * across;
+            let [far, after, before] = [out * across, last + out * to_last, next + out * to_next];
+            walk = Walk {
+                triangle: other / 3,
+                corner: m,
+                coordinates: [far, after, before],
+                has_crossed: true,
+            };
             // The side of the opposite corner on which the way passes.
             let is_first = after.x < 0.0 && (before.x >= 0.0 || after.perp_dot(before) >= 0.0);
-            (k, out, kept) = if is_first {
-                (NEXT[m], after, [before, far])
-            } else {
-                (LAST[m], before, [far, after])
+            (k, out, next, last) = match is_first {
+                true => (NEXT[m], after, before, far),
+                false => (LAST[m], before, far, after),
             };
         }
-        let mut weights = [0.0; 3];
-        (weights[m], weights[NEXT[m]], weights[LAST[m]]) = (far.x, after.x, before.x);
-        let rotation = match crossed {
-            0 => start.rotation,
-            _ => turn(&start, self.way_there(triangle, m, [far, after, before])),
-        };
-        Place::at(triangle, weights, rotation)
+        End::Inside(walk)
     }
 
-    /// A whole way in the plane of a triangle, from the changes of the coordinates of corner `m`, the next and the last.
-    #[inline]
-    fn way_there(&self, triangle: u32, m: usize, [far, after, before]: [DVec2; 3]) -> DVec2 {
+    /// The whole way of a walk in the plane of its triangle.
+    #[inline(always)]
+    fn way_there(&self, walk: &Walk) -> DVec2 {
         let mut rates = [0.0; 3];
-        (rates[m], rates[(m + 1) % 3], rates[(m + 2) % 3]) = (far.y, after.y, before.y);
-        self.charts[triangle as usize].along(rates)
+        let corners = [walk.corner, NEXT[walk.corner], LAST[walk.corner]];
+        for (corner, coordinate) in corners.into_iter().zip(walk.coordinates) {
+            rates[corner] = coordinate.y;
+        }
+        self.charts[walk.triangle as usize].along(rates)
     }
-}
 
-/// The rotation from the tangent plane in which a way begins to that in which it is `way`.
-#[inline]
-fn turn(start: &Start, way: DVec2) -> DVec2 {
-    turned(turned_back(start.way, way).normalize_or(DVec2::X), start.rotation)
+    /// The end of a walk that can't cross edge `k`: it slides along a border, and stops where too many edges were
+    /// crossed. `start` has the way and the rotation at its beginning.
+    #[inline(never)]
+    fn at_edge(&self, walk: &Walk, k: usize, (way, rotation): (DVec2, DVec2)) -> Place {
+        let mut coordinates = [DVec2::ZERO; 3];
+        let corners = [walk.corner, NEXT[walk.corner], LAST[walk.corner]];
+        for (corner, coordinate) in corners.into_iter().zip(walk.coordinates) {
+            coordinates[corner] = coordinate;
+        }
+        let out = coordinates[k];
+        let left = if out.y < 0.0 { (out.x / out.y).min(1.0) } else { 0.0 };
+        let mut weights = coordinates.map(|coordinate| coordinate.x - left * coordinate.y);
+        weights[k] = 0.0;
+        let way_there = self.way_there(walk);
+        let rotation = turned(turned_back(way, way_there).normalize_or(DVec2::X), rotation);
+        let place = Place::at(walk.triangle, weights, rotation);
+        let edge = 3 * walk.triangle + k as u32;
+        match self.crossings.beside(edge) {
+            WALL => self.slide(OnBorder::at(place, edge), way_there * left),
+            _ => place,
+        }
+    }
+
+    /// The values of a vector field, given in the vertices' tangent planes, at the ends of ways, carried back to the
+    /// tangent planes of the vertices at their beginnings. `corners` has the vertices of a triangle.
+    #[inline(always)]
+    pub fn vectors_at(
+        &self,
+        ends: &Ends,
+        count: usize,
+        corners: impl Fn(usize) -> [usize; 3],
+        field: &[DVec2],
+    ) -> Vectors {
+        let mut vectors = [[[0.0; LANES]; 2]; 3];
+        let mut rotations = [[[0.0; LANES]; 2]; 3];
+        let mut twists = [[0.0; LANES]; 3];
+        for i in 0..count {
+            let triangle = ends.triangles[i] as usize;
+            let (own, own_twists) = (self.fans.rotations(triangle), self.fans.twists(triangle));
+            for (k, vertex) in corners(triangle).into_iter().enumerate() {
+                put(&mut vectors[k], i, field[vertex]);
+                put(&mut rotations[k], i, own[k]);
+                twists[k][i] = own_twists[k];
+            }
+        }
+        let mut sum = [[0.0; LANES]; 2];
+        for k in 0..3 {
+            let [own, after, before] = [k, (k + 1) % 3, (k + 2) % 3].map(|corner| &ends.weights[corner]);
+            let mut angles = [0.0; LANES];
+            for i in 0..LANES {
+                let both = after[i] + before[i];
+                let share = before[i] / both - 0.5;
+                angles[i] = if both > 0.0 { share * twists[k][i] } else { 0.0 };
+            }
+            turn(&mut rotations[k], &angles);
+            change(&mut sum, |i, sum| {
+                sum + turned_back(vector(&rotations[k], i), vector(&vectors[k], i)) * own[i]
+            });
+        }
+        change(&mut sum, |i, sum| turned_back(vector(&ends.rotations, i), sum));
+        sum
+    }
 }
 
 #[cfg(test)]
@@ -178,9 +344,15 @@ mod tests {
     }
 
     fn traced(domain: &Domain, vertex: usize, displacement: DVec2) -> Option<Place> {
-        let mut places = [None; BLOCK];
-        domain.trace(vertex, &[displacement], &mut places);
-        places[0]
+        let (mut ends, mut displacements) = (Ends::new(), [[0.0; LANES]; 2]);
+        put(&mut displacements, 0, displacement);
+        domain.trace(vertex, 1, &displacements, &mut ends);
+        let is_bare = domain.fans.corners(vertex).is_empty();
+        (!is_bare).then(|| Place {
+            triangle: ends.triangles[0],
+            weights: [0, 1, 2].map(|k| ends.weights[k][0]),
+            rotation: vector(&ends.rotations, 0),
+        })
     }
 
     fn place_of(domain: &Domain, vertex: usize, displacement: DVec2) -> Place {
