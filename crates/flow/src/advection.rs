@@ -15,8 +15,9 @@ use pliant_mesh::{Cancel, Cancelled, vectors};
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::corners::Corners;
 use crate::fluid::Fluid;
-use crate::lanes::{LANES, change, put, vector};
+use crate::lanes::{LANES, Vectors, change, put, vector};
 use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
@@ -185,8 +186,7 @@ impl WithSimd for Backward<'_> {
             dye,
         } = self.fields;
         let (domain, seconds) = (&fluid.domain, self.seconds);
-        let corners = |triangle: usize| fluid.corners(triangle);
-        let mut ends = Ends::new();
+        let (mut ends, mut corners) = (Ends::new(), Corners::new());
         for from in (0..self.first.len()).step_by(LANES) {
             let count = LANES.min(self.first.len() - from);
             let vertex = self.start + from;
@@ -197,7 +197,7 @@ impl WithSimd for Backward<'_> {
             let mut ways = velocities;
             change(&mut ways, |_, velocity| velocity * (-0.5 * seconds));
             domain.trace(vertex, count, &ways, &mut ends);
-            let middles = domain.vectors_at(&ends, count, corners, own);
+            let middles = vectors_at(fluid, &ends, count, own, &mut corners);
             // The velocity half a step forward, by extrapolation.
             change(&mut velocities, |i, velocity| {
                 (2.0 * velocity - vector(&middles, i)) * seconds
@@ -205,7 +205,7 @@ impl WithSimd for Backward<'_> {
             let mut ways = middles;
             change(&mut ways, |_, middle| middle * -seconds);
             domain.trace(vertex, count, &ways, &mut ends);
-            let first = domain.vectors_at(&ends, count, corners, carried);
+            let first = vectors_at(fluid, &ends, count, carried, &mut corners);
             for i in 0..count {
                 self.forward[from + i] = vector(&velocities, i);
                 self.first[from + i] = vector(&first, i);
@@ -264,8 +264,7 @@ impl WithSimd for Correction<'_> {
         let Fields {
             fluid, carried, dye, ..
         } = self.fields;
-        let corners = |triangle: usize| fluid.corners(triangle);
-        let mut ends = Ends::new();
+        let (mut ends, mut corners) = (Ends::new(), Corners::new());
         for from in (0..self.change.len()).step_by(LANES) {
             let count = LANES.min(self.change.len() - from);
             let start = self.start + from;
@@ -274,7 +273,7 @@ impl WithSimd for Correction<'_> {
                 put(&mut ways, i, *way);
             }
             fluid.domain.trace(start, count, &ways, &mut ends);
-            let returned = fluid.domain.vectors_at(&ends, count, corners, self.first);
+            let returned = vectors_at(fluid, &ends, count, self.first, &mut corners);
             for (i, change) in self.change[from..][..count].iter_mut().enumerate() {
                 let vertex = start + i;
                 let (carried_here, first) = (carried[vertex], self.first[vertex]);
@@ -311,6 +310,19 @@ fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     let [a, b, c] = [0, 1, 2].map(|k| turned_back(rotations[k], field[corners[k]]));
     let squares = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
     squares.into_iter().fold(0.0, f64::max).sqrt()
+}
+
+/// The values of a vector field, given in the vertices' tangent planes, at the ends of ways, carried back to the tangent
+/// planes of the vertices at their beginnings.
+#[inline(always)]
+fn vectors_at(fluid: &Fluid<'_>, ends: &Ends, count: usize, field: &[DVec2], corners: &mut Corners) -> Vectors {
+    for (i, &triangle) in ends.triangles.iter().enumerate().take(count) {
+        let vertices = fluid.corners(triangle as usize);
+        corners.read(i, &fluid.domain.fans, (triangle as usize, vertices), field);
+    }
+    let mut vectors = corners.interpolate(&ends.weights);
+    change(&mut vectors, |i, there| turned_back(vector(&ends.rotations, i), there));
+    vectors
 }
 
 /// The dye at the end of a way.

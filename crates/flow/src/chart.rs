@@ -36,6 +36,15 @@ impl Chart {
         [self.base, self.apex.x, self.apex.y]
     }
 
+    /// The triangle with such a layout.
+    #[inline(always)]
+    pub fn with_layout([base, x, y]: [f64; 3]) -> Self {
+        Self {
+            base,
+            apex: DVec2::new(x, y),
+        }
+    }
+
     /// The area.
     #[inline(always)]
     pub fn area(&self) -> f64 {

@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
 use crate::hinges::{Hinges, corner_at, last, next};
-use crate::plane::{rotation_between, small_rotation, turned, turned_back};
+use crate::plane::{rotation_between, turned, turned_back};
 
 /// The corners around each vertex.
 #[derive(Clone, Debug)]
@@ -21,11 +21,19 @@ pub(crate) struct Fans {
     starts: Vec<f64>,
     /// Angle on the surface over angle in the plane of a vertex, less 1: 0 at borders.
     bends: Vec<f64>,
-    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
-    rotations: Vec<[DVec2; 3]>,
+    /// How each triangle's plane fits to those of its corners.
+    fits: Vec<Fit>,
+}
+
+/// How a triangle's plane fits to the tangent planes of its corners: one line of the processor's memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Fit {
+    /// The rotations from the triangle's plane to those of its corners, in the middles of the corners.
+    rotations: [DVec2; 3],
     /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
-    /// defect that the corner takes.
-    twists: Vec<[f64; 3]>,
+    /// defect that the corner takes. In single precision: it is a small part of the rotation.
+    twists: [f32; 3],
 }
 
 /// The corner into which a direction at a vertex leads.
@@ -56,8 +64,13 @@ impl Fans {
             corners: Vec::with_capacity(3 * charts.len()),
             starts: Vec::with_capacity(3 * charts.len()),
             bends: Vec::with_capacity(count),
-            rotations: vec![[DVec2::X; 3]; charts.len()],
-            twists: vec![[0.0; 3]; charts.len()],
+            fits: vec![
+                Fit {
+                    rotations: [DVec2::X; 3],
+                    twists: [0.0; 3],
+                };
+                charts.len()
+            ],
         };
         fans.offsets.push(0);
         for vertex in (0..count as u32).map(SurfaceVertex) {
@@ -83,8 +96,9 @@ impl Fans {
             // The middles of both agree, so that neither side of the triangle is preferred.
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
-            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
-            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
+            let fit = &mut self.fits[corner as usize / 3];
+            fit.rotations[k] = rotation_between(middle, here);
+            fit.twists[k] = ((scale - 1.0) * angle) as f32;
             self.corners.push(corner);
             self.starts.push(scale * start);
             start += angle;
@@ -101,19 +115,19 @@ impl Fans {
     /// The rotation from a corner's triangle to the tangent plane of its vertex.
     #[inline(always)]
     pub fn rotation(&self, corner: u32) -> DVec2 {
-        self.rotations[corner as usize / 3][corner as usize % 3]
+        self.fits[corner as usize / 3].rotations[corner as usize % 3]
     }
 
     /// By how much that rotation is more along the corner's last edge than along its first.
     #[inline(always)]
     pub fn twist(&self, corner: u32) -> f64 {
-        self.twists[corner as usize / 3][corner as usize % 3]
+        f64::from(self.fits[corner as usize / 3].twists[corner as usize % 3])
     }
 
     /// The twists of a triangle's corners.
     #[inline(always)]
     pub fn twists(&self, triangle: usize) -> [f64; 3] {
-        self.twists[triangle]
+        self.fits[triangle].twists.map(f64::from)
     }
 
     /// Angle on the surface over angle in the plane of a vertex, less 1: 0 at borders.
@@ -122,21 +136,10 @@ impl Fans {
         self.bends[vertex]
     }
 
-    /// A vector at the vertex of each of a triangle's corners as it is in the triangle's plane, along the first edge of
-    /// the corner and along its last one: to the next corner and to the one before.
-    #[inline(always)]
-    pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
-        std::array::from_fn(|k| {
-            let middle = turned_back(self.rotations[triangle][k], vectors[k]);
-            let half = small_rotation(0.5 * self.twists[triangle][k]);
-            [turned(half, middle), turned_back(half, middle)]
-        })
-    }
-
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
     #[inline(always)]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
-        self.rotations[triangle]
+        self.fits[triangle].rotations
     }
 
     /// The wedge into which the direction at an angle in the plane of a vertex leads; `None` if it is bare.

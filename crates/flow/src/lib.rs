@@ -37,6 +37,7 @@
 mod advection;
 mod chart;
 mod conservation;
+mod corners;
 mod crossings;
 mod domain;
 mod error;

@@ -10,6 +10,7 @@
 
 use glam::DVec2;
 
+use crate::corners::along_ray;
 use crate::domain::{Domain, MOST_EDGES, Place};
 use crate::hinges::WALL;
 use crate::lanes::{LANES, Lanes, Vectors, change, put, turn, vector};
@@ -155,28 +156,30 @@ impl Domain {
             let Some(wedge) = self.fans.wedge(vertex, angles[i]) else {
                 continue;
             };
-            let mut corner = wedge.corner;
+            corners[i] = wedge.corner;
+            turns[i] = (angles[i] - wedge.middle) * self.fans.bend(vertex);
             if wedge.is_last_of_open || vector(ways, i) == DVec2::ZERO {
                 let way = self
                     .fans
                     .way_at_border(vertex, vector(ways, i), angles[i], &self.charts);
-                corner = way.corner;
+                corners[i] = way.corner;
                 others[other_count] = Some((i, way.direction));
                 other_count += 1;
             }
-            corners[i] = corner;
-            put(rotations, i, self.fans.rotation(corner));
-            twists[i] = self.fans.twist(corner);
-            turns[i] = (angles[i] - wedge.middle) * self.fans.bend(vertex);
-            let layout = self.charts[corner as usize / 3].layout();
-            (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
+        }
+        for (i, &corner) in corners.iter().enumerate().take(count) {
+            if corner != WALL {
+                put(rotations, i, self.fans.rotation(corner));
+                twists[i] = self.fans.twist(corner);
+                let layout = self.charts[corner as usize / 3].layout();
+                (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
+            }
         }
         change(ways, |i, way| turned_back(vector(rotations, i), way));
         turn(ways, &turns);
         for (i, way) in others.into_iter().take(other_count).flatten() {
             put(ways, i, way);
         }
-        let mut shares = [0.0; LANES];
         for i in 0..LANES {
             // The chart's rates.
             let of_2 = ways[1][i] / layouts[2][i];
@@ -194,12 +197,9 @@ impl Domain {
             };
             let [after, before] = [pick(of_1, of_2, of_0), pick(of_2, of_0, of_1)];
             (rates[0][i], rates[1][i], rates[2][i]) = (pick(of_0, of_1, of_2), after, before);
-            let [after, before] = [after, before].map(|rate| if rate > 0.0 { rate } else { 0.0 });
-            let both = after + before;
-            let share = before / both - 0.5;
-            shares[i] = if both > 0.0 { share * twists[i] } else { 0.0 };
         }
-        turn(rotations, &shares);
+        let [after, before] = [rates[1], rates[2]].map(|rates| rates.map(|rate| if rate > 0.0 { rate } else { 0.0 }));
+        turn(rotations, &along_ray([&after, &before], &twists));
         change(rotations, |_, rotation| conjugate(rotation));
     }
 
@@ -273,46 +273,6 @@ impl Domain {
             WALL => self.slide(OnBorder::at(place, edge), way_there * left),
             _ => place,
         }
-    }
-
-    /// The values of a vector field, given in the vertices' tangent planes, at the ends of ways, carried back to the
-    /// tangent planes of the vertices at their beginnings. `corners` has the vertices of a triangle.
-    #[inline(always)]
-    pub fn vectors_at(
-        &self,
-        ends: &Ends,
-        count: usize,
-        corners: impl Fn(usize) -> [usize; 3],
-        field: &[DVec2],
-    ) -> Vectors {
-        let mut vectors = [[[0.0; LANES]; 2]; 3];
-        let mut rotations = [[[0.0; LANES]; 2]; 3];
-        let mut twists = [[0.0; LANES]; 3];
-        for i in 0..count {
-            let triangle = ends.triangles[i] as usize;
-            let (own, own_twists) = (self.fans.rotations(triangle), self.fans.twists(triangle));
-            for (k, vertex) in corners(triangle).into_iter().enumerate() {
-                put(&mut vectors[k], i, field[vertex]);
-                put(&mut rotations[k], i, own[k]);
-                twists[k][i] = own_twists[k];
-            }
-        }
-        let mut sum = [[0.0; LANES]; 2];
-        for k in 0..3 {
-            let [own, after, before] = [k, (k + 1) % 3, (k + 2) % 3].map(|corner| &ends.weights[corner]);
-            let mut angles = [0.0; LANES];
-            for i in 0..LANES {
-                let both = after[i] + before[i];
-                let share = before[i] / both - 0.5;
-                angles[i] = if both > 0.0 { share * twists[k][i] } else { 0.0 };
-            }
-            turn(&mut rotations[k], &angles);
-            change(&mut sum, |i, sum| {
-                sum + turned_back(vector(&rotations[k], i), vector(&vectors[k], i)) * own[i]
-            });
-        }
-        change(&mut sum, |i, sum| turned_back(vector(&ends.rotations, i), sum));
-        sum
     }
 }
 
