@@ -11,26 +11,29 @@
 //! means keep the share s, and which a step multiplies by z, is multiplied by 1 − s + s z, so it does not grow.
 
 use glam::DVec2;
-use pliant_mesh::{Cancel, Cancelled};
+use pliant_mesh::{Cancel, Cancelled, vectors};
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::corners::Corners;
 use crate::fluid::Fluid;
+use crate::lanes::{LANES, Vectors, change, put, vector};
 use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
-use crate::trace::{BLOCK, Place};
+use crate::trace::Ends;
 
 /// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
 pub(crate) type Dye = [f64; 4];
 
 /// The larger value of each channel; of two that are numbers, in one instruction, unlike [`f64::max`].
-#[inline]
+#[inline(always)]
 pub(crate) fn larger(a: Dye, b: Dye) -> Dye {
     std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
 }
 
 /// The smaller value of each channel.
-#[inline]
+#[inline(always)]
 pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
     std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
 }
@@ -119,96 +122,175 @@ fn backward(
     scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    let domain = &fluid.domain;
-    let (own, carried) = (&scratch.own, &scratch.carried);
-    let at = |place: &Place, field: &[DVec2]| domain.vector_at(place, fluid.corners(place.triangle as usize), field);
+    let fields = Fields {
+        fluid,
+        own: &scratch.own,
+        carried: &scratch.carried,
+        dye,
+    };
     let dyes = chunks_of(&mut scratch.first_dye, fluid.vertex_count());
     let velocities = scratch
         .first
         .par_chunks_mut(CHUNK)
         .zip(scratch.change.par_chunks_mut(CHUNK));
     let chunks = velocities.zip(scratch.source.par_chunks_mut(CHUNK)).zip(dyes);
+    let arch = vectors();
     chunks
         .enumerate()
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
             cancel.check()?;
-            // One thing after another for several vertices, so that the processor waits for several places at a time.
-            let (mut places, mut ways) = ([None; BLOCK], [DVec2::ZERO; BLOCK]);
-            for start in (0..first.len()).step_by(BLOCK) {
-                let vertices = start..(start + BLOCK).min(first.len());
-                let vertex = |i: usize| chunk * CHUNK + i;
-                let ways = &mut ways[..vertices.len()];
-                for (i, way) in vertices.clone().zip(ways.iter_mut()) {
-                    *way = own[vertex(i)] * (-0.5 * seconds);
-                }
-                domain.trace(vertex(start), ways, &mut places);
-                for ((i, way), place) in vertices.clone().zip(ways.iter_mut()).zip(&places) {
-                    let middle = place.map_or(DVec2::ZERO, |half| at(&half, own));
-                    *way = middle * -seconds;
-                    // The velocity half a step forward, by extrapolation.
-                    forward[i] = (2.0 * own[vertex(i)] - middle) * seconds;
-                }
-                domain.trace(vertex(start), ways, &mut places);
-                for (i, place) in vertices.clone().zip(&places) {
-                    if let Some(back) = place {
-                        first[i] = at(back, carried);
-                        source[i] = back.triangle;
-                    }
-                }
-                for (first_dye, place) in first_dye.iter_mut().skip(start).zip(&places) {
-                    if let Some(back) = place {
-                        *first_dye = dye_at(fluid, back, dye);
-                    }
-                }
-            }
+            arch.dispatch(Backward {
+                fields,
+                start: chunk * CHUNK,
+                seconds,
+                first,
+                forward,
+                source,
+                first_dye,
+            });
             Ok(())
         })
 }
 
+/// The fields that a step carries.
+#[derive(Clone, Copy)]
+struct Fields<'a> {
+    fluid: &'a Fluid<'a>,
+    own: &'a [DVec2],
+    carried: &'a [DVec2],
+    dye: &'a [Dye],
+}
+
+/// Looks back from the vertices from `start` on.
+///
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
+struct Backward<'a> {
+    fields: Fields<'a>,
+    start: usize,
+    seconds: f64,
+    first: &'a mut [DVec2],
+    forward: &'a mut [DVec2],
+    source: &'a mut [u32],
+    first_dye: &'a mut [Dye],
+}
+
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Fields {
+            fluid,
+            own,
+            carried,
+            dye,
+        } = self.fields;
+        let (domain, seconds) = (&fluid.domain, self.seconds);
+        let (mut ends, mut corners) = (Ends::new(), Corners::new());
+        for from in (0..self.first.len()).step_by(LANES) {
+            let count = LANES.min(self.first.len() - from);
+            let vertex = self.start + from;
+            let mut velocities = [[0.0; LANES]; 2];
+            for (i, own) in own[vertex..][..count].iter().enumerate() {
+                put(&mut velocities, i, *own);
+            }
+            let mut ways = velocities;
+            change(&mut ways, |_, velocity| velocity * (-0.5 * seconds));
+            domain.trace(vertex, count, &ways, &mut ends);
+            let middles = vectors_at(fluid, &ends, count, own, &mut corners);
+            // The velocity half a step forward, by extrapolation.
+            change(&mut velocities, |i, velocity| {
+                (2.0 * velocity - vector(&middles, i)) * seconds
+            });
+            let mut ways = middles;
+            change(&mut ways, |_, middle| middle * -seconds);
+            domain.trace(vertex, count, &ways, &mut ends);
+            let first = vectors_at(fluid, &ends, count, carried, &mut corners);
+            for i in 0..count {
+                self.forward[from + i] = vector(&velocities, i);
+                self.first[from + i] = vector(&first, i);
+            }
+            self.source[from..][..count].copy_from_slice(&ends.triangles[..count]);
+            for (i, first_dye) in self.first_dye.iter_mut().skip(from).take(count).enumerate() {
+                *first_dye = dye_at(fluid, &ends, i, dye);
+            }
+        }
+    }
+}
+
 /// Takes half the error of going forth and back off the first-order step.
 fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cancel) -> Result<(), Cancelled> {
-    let Scratch {
-        carried,
-        first,
-        change,
-        source,
-        first_dye,
-        dye: new_dye,
-        ..
-    } = scratch;
-    let (carried, first, source, first_dye) = (&*carried, &*first, &*source, &*first_dye);
-    let dyes = chunks_of(new_dye, fluid.vertex_count());
-    let chunks = change.par_chunks_mut(CHUNK).zip(dyes);
+    let fields = Fields {
+        fluid,
+        own: &scratch.own,
+        carried: &scratch.carried,
+        dye,
+    };
+    let (first, source, first_dye) = (&*scratch.first, &*scratch.source, &*scratch.first_dye);
+    let dyes = chunks_of(&mut scratch.dye, fluid.vertex_count());
+    let chunks = scratch.change.par_chunks_mut(CHUNK).zip(dyes);
+    let arch = vectors();
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
         cancel.check()?;
-        let mut places = [None; BLOCK];
-        for start in (0..change.len()).step_by(BLOCK) {
-            let vertices = start..(start + BLOCK).min(change.len());
-            fluid
-                .domain
-                .trace(chunk * CHUNK + start, &change[vertices.clone()], &mut places);
-            for (i, place) in vertices.clone().zip(&places) {
-                let vertex = chunk * CHUNK + i;
-                change[i] = place.map_or(DVec2::ZERO, |ahead| {
-                    let corners = fluid.corners(ahead.triangle as usize);
-                    let correction = 0.5 * (carried[vertex] - fluid.domain.vector_at(&ahead, corners, first));
-                    let most = spread(fluid, source[vertex] as usize, carried);
-                    first[vertex] + correction.clamp_length_max(most) - carried[vertex]
-                });
+        arch.dispatch(Correction {
+            fields,
+            start: chunk * CHUNK,
+            first,
+            source,
+            first_dye,
+            change,
+            new_dye,
+        });
+        Ok(())
+    })
+}
+
+/// Looks forward from the vertices from `start` on. `change` has the ways, and then the changes of the velocity.
+struct Correction<'a> {
+    fields: Fields<'a>,
+    start: usize,
+    first: &'a [DVec2],
+    source: &'a [u32],
+    first_dye: &'a [Dye],
+    change: &'a mut [DVec2],
+    new_dye: &'a mut [Dye],
+}
+
+impl WithSimd for Correction<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Fields {
+            fluid, carried, dye, ..
+        } = self.fields;
+        let (mut ends, mut corners) = (Ends::new(), Corners::new());
+        for from in (0..self.change.len()).step_by(LANES) {
+            let count = LANES.min(self.change.len() - from);
+            let start = self.start + from;
+            let mut ways = [[0.0; LANES]; 2];
+            for (i, way) in self.change[from..][..count].iter().enumerate() {
+                put(&mut ways, i, *way);
             }
-            for (i, (new_dye, place)) in new_dye.iter_mut().skip(start).zip(&places).enumerate() {
-                let vertex = chunk * CHUNK + start + i;
-                let Some(ahead) = place else { continue };
-                let returned = dye_at(fluid, ahead, first_dye);
-                let corrected: Dye =
-                    std::array::from_fn(|k| first_dye[vertex][k] + 0.5 * (dye[vertex][k] - returned[k]));
-                let [a, b, c] = fluid.corners(source[vertex] as usize).map(|corner| dye[corner]);
+            fluid.domain.trace(start, count, &ways, &mut ends);
+            let returned = vectors_at(fluid, &ends, count, self.first, &mut corners);
+            for (i, change) in self.change[from..][..count].iter_mut().enumerate() {
+                let vertex = start + i;
+                let (carried_here, first) = (carried[vertex], self.first[vertex]);
+                let correction = 0.5 * (carried_here - vector(&returned, i));
+                let most = spread(fluid, self.source[vertex] as usize, carried);
+                *change = first + correction.clamp_length_max(most) - carried_here;
+            }
+            for (i, new_dye) in self.new_dye.iter_mut().skip(from).take(count).enumerate() {
+                let vertex = start + i;
+                let (returned, first) = (dye_at(fluid, &ends, i, self.first_dye), self.first_dye[vertex]);
+                let corrected: Dye = std::array::from_fn(|k| first[k] + 0.5 * (dye[vertex][k] - returned[k]));
+                let [a, b, c] = fluid.corners(self.source[vertex] as usize).map(|corner| dye[corner]);
                 let (least, most) = (smaller(smaller(a, b), c), larger(larger(a, b), c));
                 *new_dye = smaller(larger(corrected, least), most);
             }
         }
-        Ok(())
-    })
+    }
 }
 
 /// The chunks of a field, or as many empty ones if it is empty.
@@ -221,6 +303,7 @@ fn chunks_of<T: Send>(field: &mut [T], count: usize) -> rayon::vec::IntoIter<&mu
 
 /// The largest difference between the velocities at a triangle's corners: independent of the tangent planes' axes,
 /// unlike the bounds of components.
+#[inline(always)]
 fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     let rotations = fluid.domain.fans.rotations(triangle);
     let corners = fluid.corners(triangle);
@@ -229,9 +312,23 @@ fn spread(fluid: &Fluid<'_>, triangle: usize, field: &[DVec2]) -> f64 {
     squares.into_iter().fold(0.0, f64::max).sqrt()
 }
 
-/// The dye at a place.
-fn dye_at(fluid: &Fluid<'_>, place: &Place, dye: &[Dye]) -> Dye {
-    let [a, b, c] = fluid.corners(place.triangle as usize).map(|corner| dye[corner]);
-    let [u, v, w] = place.weights;
+/// The values of a vector field, given in the vertices' tangent planes, at the ends of ways, carried back to the tangent
+/// planes of the vertices at their beginnings.
+#[inline(always)]
+fn vectors_at(fluid: &Fluid<'_>, ends: &Ends, count: usize, field: &[DVec2], corners: &mut Corners) -> Vectors {
+    for (i, &triangle) in ends.triangles.iter().enumerate().take(count) {
+        let vertices = fluid.corners(triangle as usize);
+        corners.read(i, &fluid.domain.fans, (triangle as usize, vertices), field);
+    }
+    let mut vectors = corners.interpolate(&ends.weights);
+    change(&mut vectors, |i, there| turned_back(vector(&ends.rotations, i), there));
+    vectors
+}
+
+/// The dye at the end of a way.
+#[inline(always)]
+fn dye_at(fluid: &Fluid<'_>, ends: &Ends, i: usize, dye: &[Dye]) -> Dye {
+    let [a, b, c] = fluid.corners(ends.triangles[i] as usize).map(|corner| dye[corner]);
+    let [u, v, w] = [0, 1, 2].map(|k| ends.weights[k][i]);
     std::array::from_fn(|k| u * a[k] + v * b[k] + w * c[k])
 }

@@ -30,14 +30,29 @@ impl Chart {
         }
     }
 
+    /// The length from corner 0 to corner 1, and the coordinates of corner 2.
+    #[inline(always)]
+    pub fn layout(&self) -> [f64; 3] {
+        [self.base, self.apex.x, self.apex.y]
+    }
+
+    /// The triangle with such a layout.
+    #[inline(always)]
+    pub fn with_layout([base, x, y]: [f64; 3]) -> Self {
+        Self {
+            base,
+            apex: DVec2::new(x, y),
+        }
+    }
+
     /// The area.
-    #[inline]
+    #[inline(always)]
     pub fn area(&self) -> f64 {
         0.5 * self.base * self.apex.y
     }
 
     /// The edge opposite a corner, counterclockwise.
-    #[inline]
+    #[inline(always)]
     pub fn edge(&self, corner: usize) -> DVec2 {
         match corner {
             0 => DVec2::new(self.apex.x - self.base, self.apex.y),
@@ -47,7 +62,7 @@ impl Chart {
     }
 
     /// The gradients of the three barycentric coordinates; their sum is zero.
-    #[inline]
+    #[inline(always)]
     pub fn gradients(&self) -> [DVec2; 3] {
         let across = self.apex.y.recip();
         let of_1 = DVec2::new(1.0, -self.apex.x * across) / self.base;
@@ -55,24 +70,21 @@ impl Chart {
         [-of_1 - of_2, of_1, of_2]
     }
 
-    /// The changes of the three barycentric coordinates along a vector.
-    #[inline]
-    pub fn rates(&self, along: DVec2) -> [f64; 3] {
-        // Corner 2 changes by the height, and corner 1 by the rest of the way along the base.
-        let of_2 = along.y / self.apex.y;
-        let of_1 = (along.x - self.apex.x * of_2) / self.base;
-        [-of_1 - of_2, of_1, of_2]
+    /// The vector along which the three barycentric coordinates change by `rates`.
+    #[inline(always)]
+    pub fn along(&self, rates: [f64; 3]) -> DVec2 {
+        DVec2::new(self.base * rates[1] + self.apex.x * rates[2], self.apex.y * rates[2])
     }
 
     /// The gradient of the linear function with these values at the corners, times the area.
-    #[inline]
+    #[inline(always)]
     pub fn gradient_area(&self, values: [f64; 3]) -> DVec2 {
         // A ∇φ is half the edge opposite, turned to the left.
         (self.edge(1) * (values[1] - values[0]) + self.edge(2) * (values[2] - values[0])).perp() * 0.5
     }
 
     /// The gradient of the linear function with these values at the corners.
-    #[inline]
+    #[inline(always)]
     pub fn gradient(&self, values: [f64; 3]) -> DVec2 {
         let [_, of_1, of_2] = self.gradients();
         of_1 * (values[1] - values[0]) + of_2 * (values[2] - values[0])

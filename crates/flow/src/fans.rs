@@ -7,8 +7,8 @@ use glam::DVec2;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::chart::Chart;
-use crate::hinges::{Hinges, WALL, corner_at, last, next};
-use crate::plane::{rotation_between, small_rotation, turned, turned_back};
+use crate::hinges::{Hinges, corner_at, last, next};
+use crate::plane::{rotation_between, turned, turned_back};
 
 /// The corners around each vertex.
 #[derive(Clone, Debug)]
@@ -19,13 +19,31 @@ pub(crate) struct Fans {
     corners: Vec<u32>,
     /// The direction at which each of them begins, in the plane of its vertex.
     starts: Vec<f64>,
-    /// Angle in the plane of a vertex over angle on the surface: 1 at borders.
-    scales: Vec<f64>,
-    /// The rotations from each triangle's plane to that of each of its corners, in the middle of the corner.
-    rotations: Vec<[DVec2; 3]>,
+    /// Angle on the surface over angle in the plane of a vertex, less 1: 0 at borders.
+    bends: Vec<f64>,
+    /// How each triangle's plane fits to those of its corners.
+    fits: Vec<Fit>,
+}
+
+/// How a triangle's plane fits to the tangent planes of its corners: one line of the processor's memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Fit {
+    /// The rotations from the triangle's plane to those of its corners, in the middles of the corners.
+    rotations: [DVec2; 3],
     /// By how much the rotation at a corner's last edge is more than that at its first: the part of the vertex's angle
-    /// defect that the corner takes.
-    twists: Vec<[f64; 3]>,
+    /// defect that the corner takes. In single precision: it is a small part of the rotation.
+    twists: [f32; 3],
+}
+
+/// The corner into which a direction at a vertex leads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wedge {
+    pub corner: u32,
+    /// The direction of its middle in the plane of the vertex, but for the last corner of an open fan.
+    pub middle: f64,
+    /// Whether it is the last corner of an open fan, beyond which there is no surface.
+    pub is_last_of_open: bool,
 }
 
 /// Where a direction at a vertex leads.
@@ -45,15 +63,20 @@ impl Fans {
             offsets: Vec::with_capacity(count + 1),
             corners: Vec::with_capacity(3 * charts.len()),
             starts: Vec::with_capacity(3 * charts.len()),
-            scales: Vec::with_capacity(count),
-            rotations: vec![[DVec2::X; 3]; charts.len()],
-            twists: vec![[0.0; 3]; charts.len()],
+            bends: Vec::with_capacity(count),
+            fits: vec![
+                Fit {
+                    rotations: [DVec2::X; 3],
+                    twists: [0.0; 3],
+                };
+                charts.len()
+            ],
         };
         fans.offsets.push(0);
         for vertex in (0..count as u32).map(SurfaceVertex) {
             match topology.faces(vertex, &surface.triangles).next() {
                 Some(first) => fans.add(corner_at(surface, first, vertex), hinges, charts),
-                None => fans.scales.push(1.0),
+                None => fans.bends.push(0.0),
             }
             fans.offsets.push(fans.corners.len() as u32);
         }
@@ -73,99 +96,91 @@ impl Fans {
             // The middles of both agree, so that neither side of the triangle is preferred.
             let middle = turned(DVec2::from_angle(0.5 * angle), chart.edge((k + 2) % 3));
             let here = DVec2::from_angle(scale * (start + 0.5 * angle));
-            self.rotations[corner as usize / 3][k] = rotation_between(middle, here);
-            self.twists[corner as usize / 3][k] = (scale - 1.0) * angle;
+            let fit = &mut self.fits[corner as usize / 3];
+            fit.rotations[k] = rotation_between(middle, here);
+            fit.twists[k] = ((scale - 1.0) * angle) as f32;
             self.corners.push(corner);
             self.starts.push(scale * start);
             start += angle;
         }
-        self.scales.push(scale);
+        self.bends.push(scale.recip() - 1.0);
     }
 
     /// The corners at a vertex, counterclockwise.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, vertex: usize) -> &[u32] {
         &self.corners[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
     }
 
     /// The rotation from a corner's triangle to the tangent plane of its vertex.
-    #[inline]
+    #[inline(always)]
     pub fn rotation(&self, corner: u32) -> DVec2 {
-        self.rotations[corner as usize / 3][corner as usize % 3]
+        self.fits[corner as usize / 3].rotations[corner as usize % 3]
     }
 
-    /// The rotation from a corner's triangle to the tangent plane of its vertex for vectors that come along the ray of
-    /// points at which the barycentric coordinates of the next and the last corner have the ratio of `after` to
-    /// `before`. So rays along an edge have the same rotation in both of its triangles, and a field that is interpolated
-    /// with these rotations is continuous across edges.
-    #[inline]
-    pub fn rotation_along(&self, corner: u32, after: f64, before: f64) -> DVec2 {
-        let both = after + before;
-        let share = if both > 0.0 { before / both - 0.5 } else { 0.0 };
-        let twist = self.twists[corner as usize / 3][corner as usize % 3];
-        turned(small_rotation(share * twist), self.rotation(corner))
+    /// By how much that rotation is more along the corner's last edge than along its first.
+    #[inline(always)]
+    pub fn twist(&self, corner: u32) -> f64 {
+        f64::from(self.fits[corner as usize / 3].twists[corner as usize % 3])
     }
 
-    /// A vector at the vertex of each of a triangle's corners as it is in the triangle's plane, along the first edge of
-    /// the corner and along its last one: to the next corner and to the one before.
-    #[inline]
-    pub fn at_edges(&self, triangle: usize, vectors: [DVec2; 3]) -> [[DVec2; 2]; 3] {
-        std::array::from_fn(|k| {
-            let middle = turned_back(self.rotations[triangle][k], vectors[k]);
-            let half = small_rotation(0.5 * self.twists[triangle][k]);
-            [turned(half, middle), turned_back(half, middle)]
-        })
+    /// The twists of a triangle's corners.
+    #[inline(always)]
+    pub fn twists(&self, triangle: usize) -> [f64; 3] {
+        self.fits[triangle].twists.map(f64::from)
+    }
+
+    /// Angle on the surface over angle in the plane of a vertex, less 1: 0 at borders.
+    #[inline(always)]
+    pub fn bend(&self, vertex: usize) -> f64 {
+        self.bends[vertex]
     }
 
     /// The rotations from a triangle to the tangent planes of its vertices, in the middles of its corners.
-    #[inline]
+    #[inline(always)]
     pub fn rotations(&self, triangle: usize) -> [DVec2; 3] {
-        self.rotations[triangle]
+        self.fits[triangle].rotations
     }
 
-    /// The place among a vertex's corners of that into which the direction at an angle in its plane leads; 0 if it is
-    /// bare.
-    #[inline]
-    pub fn sector(&self, vertex: usize, angle: f64) -> usize {
-        let starts = &self.starts[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize];
+    /// The wedge into which the direction at an angle in the plane of a vertex leads; `None` if it is bare.
+    #[inline(always)]
+    pub fn wedge(&self, vertex: usize, angle: f64) -> Option<Wedge> {
+        let corners = self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize;
+        let starts = &self.starts[corners.clone()];
         // Counted without branches, which would be guessed wrong as often as not.
         let begun: usize = starts.iter().map(|&start| usize::from(start <= angle)).sum();
-        begun.saturating_sub(1)
+        let place = begun.saturating_sub(1);
+        let start = *starts.get(place)?;
+        let until = starts.get(place + 1).copied().unwrap_or(TAU);
+        Some(Wedge {
+            corner: self.corners[corners.start + place],
+            middle: 0.5 * (start + until),
+            is_last_of_open: self.bends[vertex] == 0.0 && place + 1 == starts.len(),
+        })
     }
 
-    /// The way that begins at a vertex with `direction`, at `angle` in its plane and so in `sector`. A direction that
-    /// leaves the surface at a border is projected to the border's nearer edge. `None` if the vertex is bare or the
-    /// direction points straight off the border.
-    #[inline]
-    pub fn way(
-        &self,
-        vertex: usize,
-        (direction, angle, place): (DVec2, f64, usize),
-        hinges: &Hinges,
-        charts: &[Chart],
-    ) -> Option<Way> {
+    /// The way that begins at a vertex of a border with `direction`, at `angle` in its plane, in the last of its corners,
+    /// or that of no length. A direction that leaves the surface is projected to the border's nearer edge.
+    pub fn way_at_border(&self, vertex: usize, direction: DVec2, angle: f64, charts: &[Chart]) -> Way {
         let corners = self.corners(vertex);
-        let (&first, &end) = (corners.first()?, corners.last()?);
-        let starts = &self.starts[self.offsets[vertex] as usize..][..corners.len()];
-        let (corner, start) = (corners[place], starts[place]);
-        let next = match starts.get(place + 1) {
-            Some(next) => *next,
-            None if hinges.after(end) == WALL => {
-                let angle_there = charts[end as usize / 3].angle(end as usize % 3);
-                if angle - start > angle_there {
-                    return self.along_border(vertex, direction, (first, end), charts);
-                }
-                start + angle_there
-            }
-            None => TAU,
+        let (first, end) = (corners[0], corners[corners.len() - 1]);
+        let still = Way {
+            corner: first,
+            direction: DVec2::ZERO,
         };
-        // Angles at the vertex are scaled. The triangle's rotation is that of the corner's middle.
-        let off_middle = angle - 0.5 * (start + next);
-        let unscaled = small_rotation(off_middle * (self.scales[vertex].recip() - 1.0));
-        Some(Way {
-            corner,
-            direction: turned(unscaled, turned_back(self.rotation(corner), direction)),
-        })
+        if direction == DVec2::ZERO {
+            return still;
+        }
+        let start = self.starts[self.offsets[vertex + 1] as usize - 1];
+        if angle - start > charts[end as usize / 3].angle(end as usize % 3) {
+            return self
+                .along_border(vertex, direction, (first, end), charts)
+                .unwrap_or(still);
+        }
+        Way {
+            corner: end,
+            direction: turned_back(self.rotation(end), direction),
+        }
     }
 
     /// The way along the first or the last edge of an open fan, on which the direction's projection is larger.

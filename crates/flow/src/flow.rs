@@ -36,6 +36,8 @@ pub struct Flow<'a> {
     has_added: bool,
     /// The length of the last step; 0 before the first.
     last_step: f64,
+    /// The norm of the velocity on each component, while it is known.
+    speeds: Option<Vec<f64>>,
     scratch: Scratch,
 }
 
@@ -111,6 +113,7 @@ impl<'a> Flow<'a> {
             poured: vec![Dye::default(); fluid.component_count()],
             has_added: false,
             last_step: 0.0,
+            speeds: None,
             scratch: Scratch::default(),
             fluid,
         })
@@ -193,6 +196,7 @@ impl<'a> Flow<'a> {
     /// # Errors
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
+        self.speeds = None;
         self.pressure.project_added(&self.fluid, &mut self.velocity)?;
         self.has_added = false;
         Ok(())
@@ -215,7 +219,7 @@ impl<'a> Flow<'a> {
             scratch,
             ..
         } = self;
-        let mut allowed = fluid.speeds(velocity);
+        let mut allowed = self.speeds.take().unwrap_or_else(|| fluid.speeds(velocity));
         check_finite(&allowed)?;
         let steps = if self.last_step > 0.0 {
             seconds / self.last_step
@@ -250,8 +254,9 @@ impl<'a> Flow<'a> {
             let friction = self.friction.get_or_insert_with(|| Friction::of(fluid));
             friction.smooth(fluid, settings.viscosity * seconds, velocity);
         }
-        self.pressure.project(fluid, velocity)?;
-        cap(fluid, &allowed, velocity);
+        let fastest = allowed.iter().copied().fold(0.0, f64::max);
+        self.pressure.project(fluid, velocity, fastest)?;
+        self.speeds = Some(cap(fluid, &allowed, velocity));
         Ok(())
     }
 
@@ -338,13 +343,19 @@ fn check_finite(speeds: &[f64]) -> Result<(), FlowError> {
     }
 }
 
-/// Slows components that are faster than allowed: advection may have given them kinetic energy.
-fn cap(fluid: &Fluid<'_>, allowed: &[f64], velocity: &mut [DVec2]) {
-    let factor = |(&allowed, speed): (&f64, f64)| if speed > allowed { allowed / speed } else { 1.0 };
-    let factors: Vec<f64> = allowed.iter().zip(fluid.speeds(velocity)).map(factor).collect();
+/// Slows components that are faster than allowed: advection may have given them kinetic energy. Returns the norm of the
+/// velocity on each.
+fn cap(fluid: &Fluid<'_>, allowed: &[f64], velocity: &mut [DVec2]) -> Vec<f64> {
+    let mut speeds = fluid.speeds(velocity);
+    let factor = |(&allowed, &speed): (&f64, &f64)| if speed > allowed { allowed / speed } else { 1.0 };
+    let factors: Vec<f64> = allowed.iter().zip(&speeds).map(factor).collect();
     if factors.iter().all(|factor| *factor == 1.0) {
-        return;
+        return speeds;
+    }
+    for (speed, &allowed) in speeds.iter_mut().zip(allowed) {
+        *speed = speed.min(allowed);
     }
     let slow = |(triangle, velocity): (usize, &mut DVec2)| *velocity *= factors[fluid.component_of_triangle(triangle)];
     velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(slow);
+    speeds
 }

@@ -4,16 +4,20 @@
 //! velocity that varies continuously: the mean of the triangles around each vertex, interpolated.
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{SurfaceVertex, face_normal};
+use pliant_mesh::{SurfaceVertex, face_normal, vectors};
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::chart::Chart;
+use crate::corners::Corners;
+use crate::crossings::Crossings;
+use crate::domain::Domain;
 use crate::fans::Fans;
 use crate::hinges::Hinges;
+use crate::lanes::{LANES, change, vector};
 use crate::plane::turned;
 use crate::sheets::Sheets;
 use crate::sums::{CHUNK, sum, sums};
-use crate::trace::Domain;
 
 /// A surface, laid out.
 #[derive(Debug)]
@@ -43,7 +47,11 @@ impl<'a> Fluid<'a> {
         let [lengths] = sum(charts.len(), |t| [(0..3).map(|k| charts[t].edge(k).length()).sum()]);
         let mean_edge = lengths / (3 * charts.len()).max(1) as f64;
         Self {
-            domain: Domain { charts, hinges, fans },
+            domain: Domain {
+                crossings: Crossings::of(&hinges, &charts),
+                charts,
+                fans,
+            },
             masses,
             mean_edge,
             sheets,
@@ -66,19 +74,19 @@ impl<'a> Fluid<'a> {
     }
 
     /// The component of a vertex.
-    #[inline]
+    #[inline(always)]
     pub fn component(&self, vertex: usize) -> usize {
         self.sheets.topology.component(SurfaceVertex(vertex as u32)) as usize
     }
 
     /// The component of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn component_of_triangle(&self, triangle: usize) -> usize {
         self.component(self.corners(triangle)[0])
     }
 
     /// The vertices of a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [usize; 3] {
         self.sheets.surface.triangles[triangle].map(|vertex| vertex.index())
     }
@@ -134,22 +142,61 @@ impl<'a> Fluid<'a> {
     /// part of every gradient behind, in one direction in triangles that point up and the other in those that point
     /// down.
     pub fn add_to_triangles(&self, changes: &[DVec2], velocity: &mut [DVec2]) {
-        let add = |(triangle, velocity): (usize, &mut DVec2)| {
-            let chart = &self.domain.charts[triangle];
-            let corners = self.corners(triangle);
-            let gradients = chart.gradients();
-            let at = self
-                .domain
-                .fans
-                .at_edges(triangle, corners.map(|corner| changes[corner]));
-            let mut sum = DVec2::ZERO;
-            for k in 0..3 {
-                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let circulation = 0.5 * chart.edge(k).dot(at[i][0] + at[j][1]);
-                sum += (gradients[j] - gradients[i]) * circulation;
+        let arch = vectors();
+        let chunks = velocity.par_chunks_mut(CHUNK).enumerate();
+        chunks.for_each(|(chunk, velocity)| {
+            arch.dispatch(AddChanges {
+                fluid: self,
+                start: chunk * CHUNK,
+                changes,
+                velocity,
+            });
+        });
+    }
+}
+
+/// Adds the changes of vertices to the triangles from `start` on.
+///
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
+struct AddChanges<'a> {
+    fluid: &'a Fluid<'a>,
+    start: usize,
+    changes: &'a [DVec2],
+    velocity: &'a mut [DVec2],
+}
+
+impl WithSimd for AddChanges<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let mut corners = Corners::new();
+        let mut layouts = [[1.0; LANES]; 3];
+        for from in (0..self.velocity.len()).step_by(LANES) {
+            let velocity = self.velocity[from..].iter_mut().take(LANES);
+            for i in 0..velocity.len() {
+                let triangle = self.start + from + i;
+                let vertices = self.fluid.corners(triangle);
+                corners.read(i, &self.fluid.domain.fans, (triangle, vertices), self.changes);
+                let layout = self.fluid.domain.charts[triangle].layout();
+                (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
             }
-            *velocity += sum / 3.0;
-        };
-        velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(add);
+            let at = [0, 1, 2].map(|k| corners.at_edges(k));
+            let mut sums = [[0.0; LANES]; 2];
+            change(&mut sums, |i, _| {
+                let chart = Chart::with_layout([layouts[0][i], layouts[1][i], layouts[2][i]]);
+                let gradients = chart.gradients();
+                let mut sum = DVec2::ZERO;
+                for k in 0..3 {
+                    let (from, to) = ((k + 1) % 3, (k + 2) % 3);
+                    let twice = vector(&at[from][0], i) + vector(&at[to][1], i);
+                    sum += (gradients[to] - gradients[from]) * (0.5 * chart.edge(k).dot(twice));
+                }
+                sum / 3.0
+            });
+            for (i, velocity) in velocity.enumerate() {
+                *velocity += vector(&sums, i);
+            }
+        }
     }
 }

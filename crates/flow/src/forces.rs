@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::advection::Dye;
 use crate::fluid::Fluid;
-use crate::hinges::WALL;
+use crate::hinges::{WALL, last};
 use crate::sums::CHUNK;
 
 /// Adds gravity along the surface for `seconds`, in proportion to the coverage by dye; `dye` may be empty.
@@ -55,7 +55,7 @@ fn vorticity(fluid: &Fluid<'_>, velocity: &[DVec2]) -> Vec<f64> {
         let corners = domain.fans.corners(vertex);
         let is_inside = corners
             .first()
-            .is_some_and(|&first| domain.hinges.before(first) != WALL);
+            .is_some_and(|&first| domain.crossings.beside(last(first)) != WALL);
         if !is_inside {
             return 0.0;
         }

@@ -5,35 +5,35 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec2;
 
 /// `vector` turned by `rotation`, which has the cosine and the sine of an angle.
-#[inline]
+#[inline(always)]
 pub(crate) fn turned(rotation: DVec2, vector: DVec2) -> DVec2 {
     rotation.rotate(vector)
 }
 
 /// `vector` turned by the inverse of `rotation`.
-#[inline]
+#[inline(always)]
 pub(crate) fn turned_back(rotation: DVec2, vector: DVec2) -> DVec2 {
     conjugate(rotation).rotate(vector)
 }
 
 /// The inverse rotation.
-#[inline]
+#[inline(always)]
 pub(crate) fn conjugate(rotation: DVec2) -> DVec2 {
     DVec2::new(rotation.x, -rotation.y)
 }
 
 /// The rotation from the direction of `from` to that of `to`, neither of which is zero.
-#[inline]
+#[inline(always)]
 pub(crate) fn rotation_between(from: DVec2, to: DVec2) -> DVec2 {
     turned_back(from, to).normalize()
 }
 
-/// The rotation by an angle, which mostly is small.
-#[inline]
-pub(crate) fn small_rotation(angle: f64) -> DVec2 {
-    if angle.abs() > 0.02 {
-        return DVec2::from_angle(angle);
-    }
+/// The largest angle for which [`rotation_by_series`] is right.
+pub(crate) const SMALL: f64 = 0.02;
+
+/// The rotation by a small angle, at most [`SMALL`].
+#[inline(always)]
+pub(crate) fn rotation_by_series(angle: f64) -> DVec2 {
     // The next terms are below 1e-16.
     let square = angle * angle;
     DVec2::new(
@@ -42,12 +42,21 @@ pub(crate) fn small_rotation(angle: f64) -> DVec2 {
     )
 }
 
+/// The rotation by an angle, which mostly is small.
+#[inline(always)]
+pub(crate) fn small_rotation(angle: f64) -> DVec2 {
+    match angle.abs() > SMALL {
+        true => DVec2::from_angle(angle),
+        false => rotation_by_series(angle),
+    }
+}
+
 /// The angle from the x axis to a direction that is not zero, counterclockwise, from 0 to a full turn, to 1e-13.
 ///
 /// It is twice that whose tangent is y / (x + length), taken from the nearest axis so that the tangent is at most that
 /// of an eighth of a half turn; there nine terms, fitted at Chebyshev's points, are enough. This takes a fifth of the
 /// instructions of the library's `atan2`, which is for any tangent.
-#[inline]
+#[inline(always)]
 pub(crate) fn angle(direction: DVec2) -> f64 {
     const TERMS: [f64; 9] = [
         0.030_662_440_370_424_45,

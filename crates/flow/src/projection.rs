@@ -55,16 +55,16 @@ impl Pressure {
 
     /// Takes the gradient part off a velocity if it is not without divergence already.
     pub fn project_added(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
-        let total = std::mem::take(&mut self.total);
-        let projected = self.project(fluid, velocity);
+        let total = std::mem::replace(&mut self.total, vec![0.0; fluid.vertex_count()]);
+        let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
+        let projected = self.project(fluid, velocity, fastest);
         self.total = total;
         projected
     }
 
-    /// Takes the gradient part off a velocity.
-    pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
-        // The tolerance refers to the velocity as given: if all of it is a gradient, only rounding is left.
-        let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
+    /// Takes the gradient part off a velocity. The tolerance refers to `fastest`, its norm on the component with the
+    /// largest, or a little more, as given: if all of it is a gradient, only rounding is left.
+    pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2], fastest: f64) -> Result<(), FlowError> {
         let enough = ENOUGH * fastest / fluid.mean_edge;
         self.total.fill(0.0);
         self.terms.resize(fluid.triangle_count(), [0.0; 3]);

@@ -1,240 +1,279 @@
 //! Straight ways across triangles.
 //!
-//! At an edge the triangle beside is unfolded into the plane, so that the way goes on straight and vectors are carried
-//! along it without turning (parallel transport). At a border a way slides along the border.
+//! At an edge the triangle beside is unfolded into the plane, so that the way goes straight on and vectors are carried
+//! along it without turning (parallel transport). A way is given by the barycentric coordinates of its end and by their
+//! change along it: both go linearly from one triangle's plane to the next one's, so a crossing takes no division and
+//! reads one line of memory. At a border a way slides along the border (`slide`).
+//!
+//! Many ways are traced at a time, one thing after another for all of them: arithmetic goes in the processor's vectors,
+//! and it waits for several places of memory at once.
 
 use glam::DVec2;
 
-use crate::chart::Chart;
-use crate::fans::Fans;
-use crate::hinges::{Hinges, WALL, last, next};
+use crate::corners::along_ray;
+use crate::domain::{Domain, MOST_EDGES, Place};
+use crate::hinges::WALL;
+use crate::lanes::{LANES, Lanes, Vectors, change, put, turn, vector};
 use crate::plane::{self, conjugate, turned, turned_back};
+use crate::slide::OnBorder;
 
-/// The most ways that are traced at a time.
-pub(crate) const BLOCK: usize = 64;
+const NEXT: [usize; 3] = [1, 2, 0];
+const LAST: [usize; 3] = [2, 0, 1];
 
-/// A way ends after this many edges. Only a velocity far above an edge a step, or a pile of needles, comes so far.
-const MOST_EDGES: usize = 1024;
-
-/// A point on the surface, and the rotation of vectors that were carried to it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub triangle: u32,
-    /// Barycentric coordinates: not negative, with the sum 1.
-    pub weights: [f64; 3],
-    /// From the tangent plane of the vertex at the way's beginning to the triangle's plane.
-    pub rotation: DVec2,
+/// The beginnings of ways.
+struct Starts {
+    /// The corners of the triangles that they enter; [`WALL`] at bare vertices.
+    corners: [u32; LANES],
+    /// The ways in the planes of the triangles.
+    ways: Vectors,
+    /// The changes of the coordinates of the ways' own corners, the next and the last ones.
+    rates: [Lanes; 3],
+    /// From the tangent planes of the vertices to the triangles' planes.
+    rotations: Vectors,
 }
 
-/// The surface as the flow sees it: triangles in planes of their own, and how planes fit together.
-#[derive(Debug)]
-pub(crate) struct Domain {
-    pub charts: Vec<Chart>,
-    pub hinges: Hinges,
-    pub fans: Fans,
+/// The ends of ways.
+pub(crate) struct Ends {
+    pub triangles: [u32; LANES],
+    /// Barycentric coordinates: not negative, with the sum 1; all zero for a bare vertex.
+    pub weights: [Lanes; 3],
+    /// From the tangent planes of the vertices at the ways' beginnings to the triangles' planes.
+    pub rotations: Vectors,
 }
 
-/// A way that has come to a point.
-#[derive(Clone, Copy, Default)]
+impl Ends {
+    pub fn new() -> Self {
+        Self {
+            triangles: [0; LANES],
+            weights: [[0.0; LANES]; 3],
+            rotations: [[1.0; LANES], [0.0; LANES]],
+        }
+    }
+}
+
+/// A way that has come into a triangle.
+#[derive(Clone, Copy)]
 struct Walk {
     triangle: u32,
-    weights: [f64; 3],
-    /// The rest of the way.
-    left: DVec2,
-    /// The change of the weights along it.
-    rates: [f64; 3],
-    rotation: DVec2,
+    /// The corner opposite the edge through which the triangle was entered, or that at which the way begins.
+    corner: usize,
+    /// The coordinates of that corner, the next and the last one: at the way's end, and their changes along the way.
+    coordinates: [DVec2; 3],
+    has_crossed: bool,
 }
 
-impl Walk {
-    /// Goes a share of the way that is left.
-    #[inline]
-    fn advance(&mut self, share: f64) {
-        for (weight, rate) in self.weights.iter_mut().zip(self.rates) {
-            *weight = (*weight + share * rate).max(0.0);
-        }
-        self.left *= 1.0 - share;
-    }
-
-    /// The point to which it has come.
-    #[inline]
-    fn end(&self) -> Place {
-        let sum: f64 = self.weights.iter().sum();
-        Place {
-            triangle: self.triangle,
-            weights: self.weights.map(|weight| weight / sum),
-            rotation: self.rotation,
-        }
-    }
+/// Why a walk ended.
+enum End {
+    Inside(Walk),
+    /// At the edge of this number in its triangle.
+    AtEdge(Walk, usize),
 }
 
 impl Domain {
-    /// The ends of the ways from the vertices from `first` on, as many as there are `displacements`, at most [`BLOCK`],
-    /// each a vector in the tangent plane of its vertex; `None` for a bare vertex.
-    ///
-    /// One thing after another for all of them, so that the processor works at several ways at a time: each thing waits
-    /// for the one before, for memory or for a root.
-    pub fn trace(&self, first: usize, displacements: &[DVec2], places: &mut [Option<Place>; BLOCK]) {
-        let count = displacements.len().min(BLOCK);
-        let mut angles = [0.0; BLOCK];
-        for (angle, &displacement) in angles.iter_mut().zip(displacements) {
-            *angle = plane::angle(displacement);
-        }
-        let mut sectors = [0; BLOCK];
-        for (i, (sector, &angle)) in sectors.iter_mut().zip(&angles).enumerate().take(count) {
-            *sector = self.fans.sector(first + i, angle);
-        }
-        let mut walks = [None; BLOCK];
-        for (i, walk) in walks.iter_mut().enumerate().take(count) {
-            *walk = self.begin(first + i, (displacements[i], angles[i], sectors[i]));
-        }
-        for (place, walk) in places.iter_mut().zip(walks).take(count) {
-            *place = walk.map(|walk| self.walk(walk));
-        }
-    }
-
-    /// The beginning of the way from a vertex along a displacement, at an angle and in a sector of its fan.
-    #[inline]
-    fn begin(&self, vertex: usize, (displacement, angle, sector): (DVec2, f64, usize)) -> Option<Walk> {
-        let own = *self.fans.corners(vertex).first()?;
-        let way = match displacement == DVec2::ZERO {
-            true => None,
-            false => self
-                .fans
-                .way(vertex, (displacement, angle, sector), &self.hinges, &self.charts),
+    /// The ends of the ways from the vertices from `first` on, `count` of them, along displacements in the tangent
+    /// planes of these vertices. Further displacements must be numbers.
+    #[inline(always)]
+    pub fn trace(&self, first: usize, count: usize, displacements: &Vectors, ends: &mut Ends) {
+        let mut starts = Starts {
+            corners: [WALL; LANES],
+            ways: *displacements,
+            rates: [[0.0; LANES]; 3],
+            rotations: [[1.0; LANES], [0.0; LANES]],
         };
-        let (corner, left) = way.map_or((own, DVec2::ZERO), |way| (way.corner, way.direction));
-        let k = corner as usize % 3;
-        let mut weights = [0.0; 3];
-        weights[k] = 1.0;
-        let rates = self.charts[corner as usize / 3].rates(left);
-        let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| rates[other].max(0.0));
-        Some(Walk {
-            triangle: corner / 3,
-            weights,
-            left,
+        self.start(first, count, &mut starts);
+        let mut arrived: [Lanes; 3] = [[0.0; LANES]; 3];
+        let mut there: Vectors = starts.ways;
+        // Ways that slid along a border are finished already.
+        let (mut slid, mut slid_count) = ([None; LANES], 0);
+        for i in 0..count {
+            ends.triangles[i] = 0;
+            if starts.corners[i] == WALL {
+                continue;
+            }
+            match self.walk(starts.corners[i], [0, 1, 2].map(|k| starts.rates[k][i])) {
+                End::Inside(walk) => {
+                    ends.triangles[i] = walk.triangle;
+                    for (k, coordinate) in [walk.corner, NEXT[walk.corner], LAST[walk.corner]]
+                        .into_iter()
+                        .zip(walk.coordinates)
+                    {
+                        arrived[k][i] = coordinate.x;
+                    }
+                    if walk.has_crossed {
+                        put(&mut there, i, self.way_there(&walk));
+                    }
+                }
+                End::AtEdge(walk, k) => {
+                    let start = (vector(&starts.ways, i), vector(&starts.rotations, i));
+                    slid[slid_count] = Some((i, self.at_edge(&walk, k, start)));
+                    slid_count += 1;
+                }
+            }
+        }
+        change(&mut there, |i, there| {
+            let turn = turned_back(vector(&starts.ways, i), there);
+            let length = turn.length();
+            let turn = if length > 0.0 { turn / length } else { DVec2::X };
+            turned(turn, vector(&starts.rotations, i))
+        });
+        ends.rotations = there;
+        for i in 0..LANES {
+            let inside = [0, 1, 2].map(|k| if arrived[k][i] > 0.0 { arrived[k][i] } else { 0.0 });
+            let sum = inside[0] + inside[1] + inside[2];
+            let inverse = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+            for k in 0..3 {
+                ends.weights[k][i] = inside[k] * inverse;
+            }
+        }
+        for (i, place) in slid.into_iter().take(slid_count).flatten() {
+            ends.triangles[i] = place.triangle;
+            for (weights, weight) in ends.weights.iter_mut().zip(place.weights) {
+                weights[i] = weight;
+            }
+            put(&mut ends.rotations, i, place.rotation);
+        }
+    }
+
+    /// Begins ways along the displacements that `starts.ways` has.
+    #[inline(always)]
+    fn start(&self, first: usize, count: usize, starts: &mut Starts) {
+        let Starts {
+            corners,
+            ways,
             rates,
-            rotation: conjugate(self.fans.rotation_along(corner, after, before)),
-        })
-    }
-
-    /// Walks to the end.
-    fn walk(&self, mut walk: Walk) -> Place {
-        // The edge through which the triangle was entered: rounding must not lead back through it.
-        let mut entered = None;
-        for _ in 0..MOST_EDGES {
-            let Some((k, share)) = exit(walk.weights, walk.rates, entered) else {
-                walk.advance(1.0);
-                break;
+            rotations,
+        } = starts;
+        let mut angles = [0.0; LANES];
+        for (i, angle) in angles.iter_mut().enumerate() {
+            *angle = plane::angle(vector(ways, i));
+        }
+        // By how much the direction in the triangle is turned more than the middle of its corner.
+        let (mut turns, mut twists) = ([0.0; LANES], [0.0; LANES]);
+        let mut layouts = [[1.0; LANES], [0.0; LANES], [1.0; LANES]];
+        let (mut others, mut other_count) = ([None; LANES], 0);
+        for i in 0..count {
+            let vertex = first + i;
+            let Some(wedge) = self.fans.wedge(vertex, angles[i]) else {
+                continue;
             };
-            walk.advance(share);
-            walk.weights[k] = 0.0;
-            let edge = 3 * walk.triangle + k as u32;
-            entered = match self.hinges.beside(edge) {
-                WALL => self.slide(&mut walk, edge),
-                other => Some(self.cross(&mut walk, edge, other)),
+            corners[i] = wedge.corner;
+            turns[i] = (angles[i] - wedge.middle) * self.fans.bend(vertex);
+            if wedge.is_last_of_open || vector(ways, i) == DVec2::ZERO {
+                let way = self
+                    .fans
+                    .way_at_border(vertex, vector(ways, i), angles[i], &self.charts);
+                corners[i] = way.corner;
+                others[other_count] = Some((i, way.direction));
+                other_count += 1;
+            }
+        }
+        for (i, &corner) in corners.iter().enumerate().take(count) {
+            if corner != WALL {
+                put(rotations, i, self.fans.rotation(corner));
+                twists[i] = self.fans.twist(corner);
+                let layout = self.charts[corner as usize / 3].layout();
+                (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
+            }
+        }
+        change(ways, |i, way| turned_back(vector(rotations, i), way));
+        turn(ways, &turns);
+        for (i, way) in others.into_iter().take(other_count).flatten() {
+            put(ways, i, way);
+        }
+        for i in 0..LANES {
+            // The chart's rates.
+            let of_2 = ways[1][i] / layouts[2][i];
+            let of_1 = (ways[0][i] - layouts[1][i] * of_2) / layouts[0][i];
+            let of_0 = -of_1 - of_2;
+            let k = corners[i] % 3;
+            let pick = |a: f64, b: f64, c: f64| {
+                if k == 0 {
+                    a
+                } else if k == 1 {
+                    b
+                } else {
+                    c
+                }
+            };
+            let [after, before] = [pick(of_1, of_2, of_0), pick(of_2, of_0, of_1)];
+            (rates[0][i], rates[1][i], rates[2][i]) = (pick(of_0, of_1, of_2), after, before);
+        }
+        let [after, before] = [rates[1], rates[2]].map(|rates| rates.map(|rate| if rate > 0.0 { rate } else { 0.0 }));
+        turn(rotations, &along_ray([&after, &before], &twists));
+        change(rotations, |_, rotation| conjugate(rotation));
+    }
+
+    /// Walks to the end of a way that begins at a corner.
+    #[inline(always)]
+    fn walk(&self, corner: u32, rates: [f64; 3]) -> End {
+        let [far, after, before] = rates;
+        let mut walk = Walk {
+            triangle: corner / 3,
+            corner: corner as usize % 3,
+            coordinates: [DVec2::new(1.0 + far, far), DVec2::splat(after), DVec2::splat(before)],
+            has_crossed: false,
+        };
+        // A way that begins at a corner leaves by the edge opposite.
+        let (mut k, [mut out, mut next, mut last]) = (walk.corner, walk.coordinates);
+        let mut crossed = 0;
+        while out.x < 0.0 {
+            let (other, [to_next, to_last, across]) = self.crossings.across(walk.triangle, k);
+            if other == WALL || crossed == MOST_EDGES {
+                return End::AtEdge(walk, k);
+            }
+            crossed += 1;
+            let m = other as usize % 3;
+            // The edge's ends change their roles.
+            let [far, after, before] = [out * across, last + out * to_last, next + out * to_next];
+            walk = Walk {
+                triangle: other / 3,
+                corner: m,
+                coordinates: [far, after, before],
+                has_crossed: true,
+            };
+            // The side of the opposite corner on which the way passes.
+            let is_first = after.x < 0.0 && (before.x >= 0.0 || after.perp_dot(before) >= 0.0);
+            (k, out, next, last) = match is_first {
+                true => (NEXT[m], after, before, far),
+                false => (LAST[m], before, far, after),
             };
         }
-        walk.end()
+        End::Inside(walk)
     }
 
-    /// Goes over from the triangle of `edge` to that of `other`; returns the edge's number there.
-    #[inline]
-    fn cross(&self, walk: &mut Walk, edge: u32, other: u32) -> usize {
-        let turn = self.turn(edge, other);
-        let (k, m) = (edge as usize % 3, other as usize % 3);
-        let mut weights = [0.0; 3];
-        weights[(m + 1) % 3] = walk.weights[(k + 2) % 3];
-        weights[(m + 2) % 3] = walk.weights[(k + 1) % 3];
-        walk.triangle = other / 3;
-        walk.weights = weights;
-        walk.left = turned(turn, walk.left);
-        walk.rates = self.charts[other as usize / 3].rates(walk.left);
-        walk.rotation = turned(turn, walk.rotation);
-        m
-    }
-
-    /// The rotation from the plane of the triangle of `edge` to that of `other`, the same edge beside.
-    #[inline]
-    pub fn turn(&self, edge: u32, other: u32) -> DVec2 {
-        let vector = |edge: u32| self.charts[edge as usize / 3].edge(edge as usize % 3);
-        // Both have the same length.
-        let (from, to) = (vector(edge), -vector(other));
-        turned_back(from, to) / from.length_squared()
-    }
-
-    /// Follows the border, on which the walk stands at `edge`. Where the border turns, the way turns with it.
-    fn slide(&self, walk: &mut Walk, mut edge: u32) -> Option<usize> {
-        let along = self.charts[edge as usize / 3].edge(edge as usize % 3);
-        let is_forward = walk.left.dot(along) > 0.0;
-        let mut left = walk.left.dot(along).abs() / along.length();
-        (walk.left, walk.rates) = (DVec2::ZERO, [0.0; 3]);
-        for _ in 0..MOST_EDGES {
-            let length = self.charts[edge as usize / 3].edge(edge as usize % 3).length();
-            // The walk stands on the edge between `from`, which it leaves, and `to`.
-            let ends = [next(edge) as usize % 3, last(edge) as usize % 3];
-            let [from, to] = if is_forward { ends } else { [ends[1], ends[0]] };
-            let way = walk.weights[from] * length;
-            if left <= way {
-                let share = left / length;
-                walk.weights[from] -= share;
-                walk.weights[to] += share;
-                return None;
-            }
-            left -= way;
-            walk.weights = [0.0; 3];
-            walk.weights[to] = 1.0;
-            edge = self.around(walk, 3 * walk.triangle + to as u32, is_forward);
+    /// The whole way of a walk in the plane of its triangle.
+    #[inline(always)]
+    fn way_there(&self, walk: &Walk) -> DVec2 {
+        let mut rates = [0.0; 3];
+        let corners = [walk.corner, NEXT[walk.corner], LAST[walk.corner]];
+        for (corner, coordinate) in corners.into_iter().zip(walk.coordinates) {
+            rates[corner] = coordinate.y;
         }
-        None
+        self.charts[walk.triangle as usize].along(rates)
     }
 
-    /// Carries a walk that stands on the vertex of `corner` around it to the border's other edge, and returns that.
-    fn around(&self, walk: &mut Walk, mut corner: u32, is_forward: bool) -> u32 {
-        for _ in 0..MOST_EDGES {
-            // Forward the border comes counterclockwise along an edge and leaves at the fan's clockwise end.
-            let crossed = if is_forward { last(corner) } else { next(corner) };
-            let other = self.hinges.beside(crossed);
-            if other == WALL {
-                return crossed;
-            }
-            self.cross(walk, crossed, other);
-            corner = if is_forward { last(other) } else { next(other) };
-            walk.weights = [0.0; 3];
-            walk.weights[corner as usize % 3] = 1.0;
+    /// The end of a walk that can't cross edge `k`: it slides along a border, and stops where too many edges were
+    /// crossed. `start` has the way and the rotation at its beginning.
+    #[inline(never)]
+    fn at_edge(&self, walk: &Walk, k: usize, (way, rotation): (DVec2, DVec2)) -> Place {
+        let mut coordinates = [DVec2::ZERO; 3];
+        let corners = [walk.corner, NEXT[walk.corner], LAST[walk.corner]];
+        for (corner, coordinate) in corners.into_iter().zip(walk.coordinates) {
+            coordinates[corner] = coordinate;
         }
-        corner
-    }
-
-    /// The value of a vector field, given in the vertices' tangent planes, at a place, carried back to the tangent
-    /// plane of the vertex from which the place was reached.
-    #[inline]
-    pub fn vector_at(&self, place: &Place, vertices: [usize; 3], field: &[DVec2]) -> DVec2 {
-        let mut sum = DVec2::ZERO;
-        for k in 0..3 {
-            let [after, before] = [(k + 1) % 3, (k + 2) % 3].map(|other| place.weights[other]);
-            let rotation = self.fans.rotation_along(3 * place.triangle + k as u32, after, before);
-            sum += turned_back(rotation, field[vertices[k]]) * place.weights[k];
-        }
-        turned_back(place.rotation, sum)
-    }
-}
-
-/// The edge through which a point leaves a triangle before its barycentric coordinates have changed by `rates`, and the
-/// share of the way to it.
-#[inline]
-fn exit(weights: [f64; 3], rates: [f64; 3], entered: Option<usize>) -> Option<(usize, f64)> {
-    let mut found = None;
-    let mut least = 1.0;
-    for k in 0..3 {
-        if Some(k) != entered && weights[k] + rates[k] < 0.0 {
-            let share = weights[k] / -rates[k];
-            if share < least {
-                (found, least) = (Some(k), share);
-            }
+        let out = coordinates[k];
+        let left = if out.y < 0.0 { (out.x / out.y).min(1.0) } else { 0.0 };
+        let mut weights = coordinates.map(|coordinate| coordinate.x - left * coordinate.y);
+        weights[k] = 0.0;
+        let way_there = self.way_there(walk);
+        let rotation = turned(turned_back(way, way_there).normalize_or(DVec2::X), rotation);
+        let place = Place::at(walk.triangle, weights, rotation);
+        let edge = 3 * walk.triangle + k as u32;
+        match self.crossings.beside(edge) {
+            WALL => self.slide(OnBorder::at(place, edge), way_there * left),
+            _ => place,
         }
     }
-    found.map(|k| (k, least))
 }
 
 #[cfg(test)]
@@ -246,6 +285,10 @@ mod tests {
     use pliant_mesh::{Model, shapes};
 
     use super::*;
+    use crate::chart::Chart;
+    use crate::crossings::Crossings;
+    use crate::fans::Fans;
+    use crate::hinges::{Hinges, last};
 
     fn domain(model: &Model) -> Domain {
         let (surface, topology) = (&model.surface, &model.topology);
@@ -253,14 +296,23 @@ mod tests {
             .map(|t| Chart::of(surface.corners(t)))
             .collect();
         let hinges = Hinges::of(surface, topology);
-        let fans = Fans::of(surface, topology, &hinges, &charts);
-        Domain { charts, hinges, fans }
+        Domain {
+            fans: Fans::of(surface, topology, &hinges, &charts),
+            crossings: Crossings::of(&hinges, &charts),
+            charts,
+        }
     }
 
     fn traced(domain: &Domain, vertex: usize, displacement: DVec2) -> Option<Place> {
-        let mut places = [None; BLOCK];
-        domain.trace(vertex, &[displacement], &mut places);
-        places[0]
+        let (mut ends, mut displacements) = (Ends::new(), [[0.0; LANES]; 2]);
+        put(&mut displacements, 0, displacement);
+        domain.trace(vertex, 1, &displacements, &mut ends);
+        let is_bare = domain.fans.corners(vertex).is_empty();
+        (!is_bare).then(|| Place {
+            triangle: ends.triangles[0],
+            weights: [0, 1, 2].map(|k| ends.weights[k][0]),
+            rotation: vector(&ends.rotations, 0),
+        })
     }
 
     fn place_of(domain: &Domain, vertex: usize, displacement: DVec2) -> Place {
@@ -322,14 +374,17 @@ mod tests {
         ] {
             let edge = last(first);
             let along = domain.charts[edge as usize / 3].edge(edge as usize % 3).normalize();
-            let mut walk = Walk {
-                triangle: first / 3,
-                left: along * length,
-                ..Walk::default()
-            };
-            walk.weights[first as usize % 3] = 1.0;
-            domain.slide(&mut walk, edge);
-            let place = walk.end();
+            let mut weights = [0.0; 3];
+            weights[first as usize % 3] = 1.0;
+            let rotation = DVec2::X;
+            let place = domain.slide(
+                OnBorder {
+                    edge,
+                    weights,
+                    rotation,
+                },
+                along * length,
+            );
             assert!(position(&model, &place).distance(end) < 1e-9, "{length}");
         }
     }

@@ -29,7 +29,7 @@ pub(crate) struct Friction {
 impl Friction {
     pub fn of(fluid: &Fluid<'_>) -> Self {
         let domain = &fluid.domain;
-        let of = |corner: u32| match domain.hinges.beside(corner) {
+        let of = |corner: u32| match domain.crossings.beside(corner) {
             WALL => DVec2::ZERO,
             other => {
                 let chart = &domain.charts[corner as usize / 3];
@@ -53,7 +53,7 @@ impl Friction {
             let own = u[triangle];
             let mut sum = DVec2::ZERO;
             for (k, &exchange) in self.exchange[triangle].iter().enumerate() {
-                let other = fluid.domain.hinges.beside((3 * triangle + k) as u32);
+                let other = fluid.domain.crossings.beside((3 * triangle + k) as u32);
                 if other != WALL {
                     sum += own * exchange.length() - turned_back(exchange, u[other as usize / 3]);
                 }
