@@ -77,7 +77,7 @@ fn strength_at(keys: &[KeyFrame], time: f64) -> Option<f64> {
 pub(crate) struct Posed {
     /// The share of the edit, if it has keys: everything else is whole then.
     strength: Option<f64>,
-    /// True if another share is shown now.
+    /// True if another share than that of the keys is shown now.
     is_other_share: bool,
     transforms: Vec<(HandleId, HandleTransform)>,
     curves: Vec<(HandleId, HandleCurve)>,
@@ -89,9 +89,11 @@ impl Posed {
     pub(crate) fn at(animation: &Animation, document: &Document, time: f64) -> Self {
         let keys = animation.keys();
         let strength = strength_at(keys, time);
+        let has_handles = keys.iter().any(|key| key.handles().count() > 0);
+        let share = strength.or_else(|| has_handles.then_some(1.0));
         let mut posed = Self {
             strength,
-            is_other_share: strength.is_some_and(|share| share != document.strength()),
+            is_other_share: share.is_some_and(|share| share != document.strength()),
             ..Self::default()
         };
         let in_full = strength.map(|_| document.in_full());
@@ -159,7 +161,7 @@ impl Posed {
         }
     }
 
-    /// Returns true if the strength has keys, and another share is shown.
+    /// Returns true if another share than that of the keys is shown: the whole, if handles alone have keys.
     pub(crate) fn is_other_share(&self) -> bool {
         self.is_other_share
     }

@@ -3,10 +3,14 @@
 
 use std::sync::Arc;
 
+use crate::animation::go_to;
+use crate::project::{reopened, saved};
 use crate::rig::{Fingerprint, Rig};
 use glam::DVec3;
 use pliant_deform::ExampleShape;
-use pliant_editor::{Command, Document, Event, HandleTransform, JobKind, MeshReference, Project, geometry_hash};
+use pliant_editor::{
+    Command, Document, Event, HandleTransform, JobKind, KeyId, KeyRow, MeshReference, Project, geometry_hash,
+};
 use pliant_mesh::shapes;
 
 fn moved_up(height: f64) -> HandleTransform {
@@ -198,6 +202,45 @@ fn a_shape_that_is_brought_is_one_step_and_stands_where_its_file_has_it() {
         rig.drain();
     }
     assert_eq!(Fingerprint::of(rig.editor.document()), before);
+    assert_eq!(weights(rig.editor.document()), [Some(0.0)]);
+}
+
+#[test]
+fn keys_of_weights_are_keys_of_their_own() {
+    let mut rig = with_example();
+    rig.command(Command::KeyWeights);
+    go_to(&mut rig, 0.5);
+    rig.command(Command::SetExampleWeight(0, Some(1.0)));
+    rig.drain();
+    let full = rig.largest_displacement();
+    rig.command(Command::KeyWeights);
+    rig.drain();
+    assert_eq!(rig.largest_displacement(), full);
+    let selected: Vec<KeyId> = rig.editor.view().selected_keys.iter().copied().collect();
+    assert_eq!(selected, [KeyId::new(KeyRow::Weights, 0.5)]);
+    let keys = rig.editor.document().animation().keys();
+    assert!(
+        keys.iter()
+            .all(|key| key.handles().count() == 0 && key.strength().is_none())
+    );
+    let keyed: Vec<_> = keys
+        .iter()
+        .map(|key| (key.time, key.weights().unwrap().to_vec()))
+        .collect();
+    assert_eq!(keyed, [(0.0, vec![Some(0.0)]), (0.5, vec![Some(1.0)])]);
+    for (time, expected) in [(0.0, 0.0), (0.25, 0.5), (0.5, 1.0)] {
+        go_to(&mut rig, time);
+        let weight = weights(rig.editor.document())[0].unwrap();
+        assert!((weight - expected).abs() < 1e-12, "{time}: {weight}");
+        // The handle has no key, and stays.
+        assert!(!rig.editor.document().handles()[0].is_displaced());
+    }
+    let again = reopened(&rig, &saved(&rig));
+    assert_eq!(again.editor.document().animation(), rig.editor.document().animation());
+    rig.command(Command::SelectKeys(vec![KeyId::new(KeyRow::Weights, 0.5)]));
+    rig.command(Command::DeleteKeys);
+    rig.drain();
+    assert_eq!(rig.editor.document().animation().keys().len(), 1);
     assert_eq!(weights(rig.editor.document()), [Some(0.0)]);
 }
 

@@ -86,6 +86,28 @@ fn the_first_key_of_the_strength_moves_nothing_and_handles_keep_their_keys() {
 }
 
 #[test]
+fn a_key_of_a_share_makes_that_share_the_whole() {
+    let (mut rig, ids, _) = keyed("bilaplacian");
+    go_to(&mut rig, 0.7);
+    put(&mut rig, ids[0], trs(DVec3::Y * 0.4, 0.2));
+    rig.command(Command::SetStrength(0.5));
+    rig.drain();
+    let half = shape(&rig);
+    rig.command(Command::KeyHere);
+    rig.drain();
+    assert!(apart(&shape(&rig), &half) < 1e-12);
+    assert_eq!(rig.editor.document().strength(), 1.0);
+    // The share is not taken a second time.
+    rig.command(Command::KeyStrength);
+    rig.drain();
+    assert!(apart(&shape(&rig), &half) < 1e-12);
+    assert_eq!(shares(&rig), [(0.7, 1.0)]);
+    go_to(&mut rig, 0.2);
+    go_to(&mut rig, 0.7);
+    assert!(apart(&shape(&rig), &half) < 1e-12);
+}
+
+#[test]
 fn every_frame_is_that_of_the_exported_edit_which_opens_with_the_same_keys() {
     for method in ["bilaplacian", "arap"] {
         let mut rig = faded(method);
