@@ -176,6 +176,7 @@ pub fn stage_animation(
         tolerance: animation.tolerance,
         fps: animation.fps,
         times: None,
+        holds: false,
         count,
         moved: MovedVertices::Surface,
         inside_out: &setup.inside_out,

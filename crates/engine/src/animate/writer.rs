@@ -35,6 +35,8 @@ pub(crate) struct AnimationFiles<'a> {
     pub count: usize,
     /// The frames' times in seconds, if the rate does not give them.
     pub times: Option<&'a [f64]>,
+    /// True if a glTF shows each frame until the next, without a way between them.
+    pub holds: bool,
     /// The vertices whose displacements a frame has.
     pub moved: MovedVertices,
     /// The connected parts that are turned inside out.
@@ -235,6 +237,7 @@ impl<'a> AnimationWriter<'a> {
             times: &times,
             weights: &weights,
             targets: &targets,
+            holds: self.files.holds,
         };
         self.written.morph = Some(MorphReport {
             targets: animation.target_names().len(),

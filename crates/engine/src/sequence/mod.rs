@@ -82,7 +82,10 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
             let morphs = Morphs::of(&first, sequence.fps, watch)?;
             morphs.check_steady(job.output)?;
             times = morphs.times().to_vec();
-            let files = sequence.animation_files(&first, (&times, morphs.fps()), watch)?;
+            let files = AnimationFiles {
+                holds: morphs.holds(),
+                ..sequence.animation_files(&first, (&times, morphs.fps()), watch)?
+            };
             let choice = morphs.choice();
             (Source::Morphs(morphs), To::Animation(files), choice)
         }
@@ -146,7 +149,7 @@ pub fn sequence(sequence: &Sequence<'_>, watch: &Watch, staging: &Staging) -> Re
 }
 
 impl Sequence<'_> {
-    /// The animation to write for a glTF with frames at these times and this rate.
+    /// The animation to write for a glTF with these frames.
     fn animation_files<'b>(
         &'b self,
         loaded: &'b Loaded,
@@ -168,6 +171,7 @@ impl Sequence<'_> {
             fps,
             count,
             times: Some(times),
+            holds: false,
             moved: MovedVertices::Drawn,
             inside_out: const { &BTreeSet::new() },
             colours: None,

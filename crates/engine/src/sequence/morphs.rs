@@ -74,6 +74,11 @@ impl Morphs {
         &self.frames.times
     }
 
+    /// Returns true if each key's shape holds until the next.
+    pub fn holds(&self) -> bool {
+        self.playback.holds()
+    }
+
     /// The frames a second, without those at uneven keys.
     pub fn fps(&self) -> f64 {
         self.frames.fps

@@ -19,6 +19,8 @@ pub struct MorphAnimation<'a> {
     pub weights: &'a [Vec<f64>],
     /// For each target the displacement of each drawn vertex, in world space.
     pub targets: &'a [Vec<DVec3>],
+    /// True if each time's shape holds until the next, without a way between them.
+    pub holds: bool,
 }
 
 /// The golden ratio less 1: multiples of it are in no simple proportion.
@@ -119,6 +121,7 @@ mod tests {
                 times: &[0.0, 1.0, 2.0],
                 weights: &weights,
                 targets,
+                holds: false,
             };
             let Unsigned {
                 weights: stored,

@@ -166,3 +166,26 @@ fn a_clip_comes_back_with_its_own_times() {
     let own = key_times(&take, "wave.glb");
     assert!(own.iter().all(|time| key_times(&take, "lifted24.glb").contains(time)));
 }
+
+#[test]
+fn a_clip_whose_shapes_hold_comes_back_with_shapes_that_hold() {
+    let take = waving();
+    let linear = br#""interpolation":"LINEAR""#;
+    let mut bytes = std::fs::read(take.folder.at("wave.glb")).unwrap();
+    let places = |bytes: &[u8], what: &[u8]| -> Vec<usize> {
+        let windows = bytes.windows(what.len()).enumerate();
+        windows
+            .filter(|(_, own)| *own == what)
+            .map(|(place, _)| place)
+            .collect()
+    };
+    let found = places(&bytes, linear);
+    assert_eq!(found.len(), 1);
+    bytes[found[0]..][..linear.len()].copy_from_slice(br#""interpolation":"STEP"  "#);
+    std::fs::write(take.folder.at("held.glb"), bytes).unwrap();
+    let keys = json!([key(3, [1, 5], turned(0.8, [0.2, 0.0, 0.1]))]);
+    edited(&take, "held.glb", keys, "lifted.glb", &[]).done();
+    let lifted = std::fs::read(take.folder.at("lifted.glb")).unwrap();
+    assert!(places(&lifted, b"\"STEP\"").len() >= 2);
+    assert!(places(&lifted, linear).is_empty());
+}

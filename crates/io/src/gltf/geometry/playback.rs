@@ -54,6 +54,11 @@ impl MorphPlayback {
         &self.key_times
     }
 
+    /// Returns true if each key's shape holds until the next, everywhere.
+    pub fn holds(&self) -> bool {
+        self.parts.iter().all(|part| part.track.holds())
+    }
+
     /// Adds the displacements since rest at a time in seconds to the positions of the drawn vertices.
     pub fn displace(&self, time: f64, positions: &mut [DVec3]) {
         for part in &self.parts {

@@ -62,6 +62,11 @@ impl WeightTrack {
         self.times.last().copied().unwrap_or_default()
     }
 
+    /// Returns true if each key's weights hold until the next.
+    pub fn holds(&self) -> bool {
+        self.interpolation == Interpolation::Step
+    }
+
     /// The weights of the targets at a time; the first key's before it, and the last one's after it.
     pub fn at(&self, time: f64) -> Vec<f64> {
         let next = self.times.partition_point(|key| *key <= time);

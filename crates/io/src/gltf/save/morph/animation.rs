@@ -16,6 +16,8 @@ pub(super) struct WeightCourse<'a> {
     pub times: &'a [f64],
     /// For each time the weight of each new target.
     pub weights: &'a [Vec<f32>],
+    /// True if each time's weights hold until the next.
+    pub holds: bool,
 }
 
 /// A node whose weights the animation changes.
@@ -58,8 +60,9 @@ impl Patch<'_> {
                     let own = animation.weights.iter();
                     let rows = own.flat_map(|row| kept.iter().chain(row).copied());
                     let output = self.push_numbers(&rows.collect::<Vec<f32>>(), "", format)?;
+                    let way = if animation.holds { "STEP" } else { "LINEAR" };
                     samplers.push(format!(
-                        "{{\"input\":{input},\"interpolation\":\"LINEAR\",\"output\":{output}}}"
+                        "{{\"input\":{input},\"interpolation\":\"{way}\",\"output\":{output}}}"
                     ));
                     sampler_of.insert(bits, samplers.len() - 1);
                     samplers.len() - 1

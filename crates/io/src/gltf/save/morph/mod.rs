@@ -79,6 +79,7 @@ pub(crate) fn with_animation<'a>(
         name: animation.name,
         times: animation.times,
         weights: &weights,
+        holds: animation.holds,
     };
     let (of_plan, course) = course.split(0.3);
     // Nodes that share a mesh need meshes of their own if any of their targets differ. Those of a shape with all
