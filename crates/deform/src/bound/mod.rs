@@ -324,6 +324,52 @@ impl Bound {
         }
     }
 
+    /// Begins the descent to the targets that were just set at a shape: `displacements`, one per surface vertex, in world
+    /// units, whose handles' vertices need not be at their targets. Where the method's own start is lower, that stays.
+    /// Neighbouring frames of a sequence end at shapes that are close, so the end of one of them is a start from which
+    /// another one needs half the steps or fewer; the minimum is the same, to the method's tolerance.
+    ///
+    /// Returns false, and changes nothing, for a method that takes no start, for slides and rigid parts, and for a wrong
+    /// number of displacements or one that is not finite.
+    ///
+    /// ```
+    /// use glam::{DAffine3, DVec3};
+    /// use pliant_deform::{Arap, Method, Problem, Role};
+    /// use pliant_mesh::{Cancel, Progress, shapes};
+    ///
+    /// let model = shapes::model(shapes::tube(12, 16, 5.0));
+    /// let roles: Vec<Role> = model.surface.positions.iter().map(|p| match p.z {
+    ///     z if z < 0.5 => Role::Fixed,
+    ///     z if z > 4.5 => Role::Handle(0),
+    ///     _ => Role::Free,
+    /// }).collect();
+    /// let (stiffness, method) = (vec![1.0; roles.len()], Method::from(Arap::default()));
+    /// let problem = Problem::new((&model.surface, &model.topology), &roles, &stiffness, &method);
+    /// let (progress, cancel) = (Progress::new(), Cancel::new());
+    /// let ordering = method.ordering(&model.topology, &progress, &cancel)?;
+    /// let end = |angle: f64, start: Option<&[DVec3]>| -> Result<_, Box<dyn std::error::Error>> {
+    ///     let mut bound = problem.bind(ordering.as_ref(), &progress, &cancel)?;
+    ///     bound.set_targets(&[DAffine3::from_rotation_x(angle)])?;
+    ///     assert!(start.is_none_or(|start| bound.begin_at(start)));
+    ///     let mut displacements = vec![DVec3::ZERO; roles.len()];
+    ///     loop {
+    ///         let step = bound.step(&mut displacements)?;
+    ///         if step.finished {
+    ///             return Ok((displacements, step.iteration));
+    ///         }
+    ///     }
+    /// };
+    /// let (neighbour, _) = end(0.60, None)?;
+    /// let (_, alone) = end(0.61, None)?;
+    /// let (_, led) = end(0.61, Some(&neighbour))?;
+    /// assert!(led < alone);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn begin_at(&mut self, displacements: &[DVec3]) -> bool {
+        let is_shape = displacements.len() == self.vertex_count && displacements.iter().all(|way| way.is_finite());
+        is_shape && self.slides.is_none() && self.rigid.is_none() && self.method.begin_at(&self.motions, displacements)
+    }
+
     /// The energy of any displacements, one per surface vertex, as in [`Step::energy`], with soft handles pulling
     /// towards the present targets; `None` if the method has no energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {

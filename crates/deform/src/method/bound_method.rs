@@ -36,6 +36,12 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// Called when all handles are back at rest: the next step begins at rest.
     fn rest(&mut self) {}
 
+    /// Begins the descent to the targets that were just set at a shape, if that is lower than the method's own start.
+    /// Returns whether the method takes such a start.
+    fn begin_at(&mut self, _motions: &[Motion], _displacements: &[DVec3]) -> bool {
+        false
+    }
+
     /// The energy of any displacements, if the energy is a function of the vertices.
     fn energy_of(&self, _motions: &[Motion], _displacements: &[DVec3]) -> Option<f64> {
         None

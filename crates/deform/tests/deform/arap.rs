@@ -80,6 +80,46 @@ fn a_coarse_level_changes_the_way_and_not_the_end() {
     }
 }
 
+#[test]
+fn a_neighbours_end_changes_the_way_and_not_the_end() {
+    for energy in ArapEnergy::ALL {
+        for method in [Iterative::Arap(energy), Iterative::Led(energy)] {
+            // The same tube, straight and swaying.
+            let swaying = |by: f64| {
+                let mut tube = shapes::tube(24, 60, 8.0);
+                for p in &mut tube.positions {
+                    p.x += by * (0.5 * p.z).sin();
+                }
+                nonlinear::scene(tube, method)
+                    .with(Role::Fixed, |p| p.z < 0.5)
+                    .with(Role::Handle(0), |p| p.z > 7.5)
+            };
+            let target = |angle: f64| [turned(DVec3::Z * 7.5, angle, DVec3::X)];
+            let (neighbour, _) = settle(&mut swaying(0.0).bind(), &target(1.0));
+            let scene = swaying(0.1);
+            let (alone, energies) = settle(&mut scene.bind(), &target(1.1));
+            let begun_at = |start: &[DVec3]| {
+                let bound = &mut scene.bind();
+                bound.set_targets(&target(1.1)).unwrap();
+                assert!(bound.begin_at(start));
+                settle(bound, &target(1.1))
+            };
+            let (led, _) = begun_at(&neighbour);
+            let error = apart(&alone, &led) / scene.diagonal();
+            assert!(error < 1e-4, "{method:?}: {error:e}");
+            // The nearer the start, the sooner the end.
+            let (_, from_end) = begun_at(&alone);
+            let steps = [from_end.len(), energies.len()];
+            assert!(steps[0] < steps[1], "{method:?}: {steps:?}");
+            // A start that is worse than the method's own is not taken.
+            let wild: Vec<DVec3> = (0..alone.len()).map(|v| DVec3::splat((v % 7) as f64)).collect();
+            assert!(begun_at(&wild).0 == alone, "{method:?}");
+            assert!(!scene.bind().begin_at(&[DVec3::NAN].repeat(alone.len())), "{method:?}");
+            assert!(!scene.bind().begin_at(&alone[1..]), "{method:?}");
+        }
+    }
+}
+
 /// A sheet of needles: every triangle obtuse.
 fn obtuse() -> Drawn {
     let mut sheet = shapes::grid(7, 9);

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Budget, Ordering, Role, Target};
+use pliant_deform::{Budget, Ordering, Role, Solve, Target};
 use pliant_editor::{BodyMotion, FollowedHandle, HandlePlace, Rest, SequenceTimeline, Setup, settle};
 use pliant_mesh::{Model, Progress, Surface, SurfaceVertex};
 
+use super::bent::{Bent, Unbent};
 use super::held::{Held, HeldShapes, Shapes};
+use super::leaders::Leaders;
 use crate::EngineError;
 use crate::apply::bind;
 use crate::watch::Watch;
@@ -32,14 +33,6 @@ pub(super) struct Bending<'a> {
     pub handles: &'a [Vec<SurfaceVertex>],
     /// The motions of the whole body in all frames; none if its path is not bent.
     pub body: &'a [BodyMotion],
-}
-
-/// The result of a frame.
-pub(super) struct Bent {
-    /// The displacement of each surface vertex from its place in the frame.
-    pub displacements: Vec<DVec3>,
-    pub is_settled: bool,
-    pub warnings: Vec<String>,
 }
 
 /// The vertices of each handle of a setup, ascending.
@@ -135,34 +128,41 @@ impl Bending<'_> {
         Ok(holding.into_iter().filter_map(places).collect())
     }
 
-    /// Solves a frame whose surface is at `positions`; `None` if nothing moves there. `file` is used in messages.
+    /// True if frames begin at the ends of leaders.
+    pub fn is_led(&self) -> bool {
+        self.setup.method.solve() != Solve::Direct
+    }
+
+    /// Solves a frame; `None` if nothing moves there. Its descent begins at the end of its leader, if `leaders` have it.
     ///
     /// # Errors
     /// A frame that can't be bound or solved, or one by which a footprint holds it and which can't be read;
     /// [`EngineError::Interrupted`].
-    pub fn frame(
-        &self,
-        frame: usize,
-        file: &Path,
-        positions: &[DVec3],
-        watch: &Watch,
-    ) -> Result<Option<Bent>, EngineError> {
-        let Some(motion) = self.body.get(frame).filter(|motion| motion.moves()) else {
-            return self.bent(frame, file, positions, watch);
+    pub fn frame(&self, unbent: &Unbent<'_>, leaders: &Leaders, watch: &Watch) -> Result<Option<Bent>, EngineError> {
+        let bent = match leaders.end(unbent.frame) {
+            Some(bent) => Some(bent.clone()),
+            None => self.bent(unbent, leaders.start(unbent.frame), watch)?,
         };
-        let bent = self.bent(frame, file, positions, watch)?;
+        let Some(motion) = self.body.get(unbent.frame).filter(|motion| motion.moves()) else {
+            return Ok(bent);
+        };
         let mut bent = bent.unwrap_or_else(|| Bent {
-            displacements: vec![DVec3::ZERO; positions.len()],
+            displacements: vec![DVec3::ZERO; unbent.positions.len()],
             is_settled: true,
             warnings: Vec::new(),
         });
-        let ways = bent.displacements.iter_mut().zip(positions);
+        let ways = bent.displacements.iter_mut().zip(unbent.positions);
         ways.for_each(|(way, position)| *way = motion.moved(*position + *way) - *position);
         Ok(Some(bent))
     }
 
-    /// Bends a frame whose surface is at `positions` by its handles; `None` if none of them moves.
-    fn bent(&self, frame: usize, file: &Path, positions: &[DVec3], watch: &Watch) -> Result<Option<Bent>, EngineError> {
+    /// Bends a frame by its handles, without the body's path; `None` if none of them moves. A descent begins at the
+    /// shape of `start`, if that is given, or at rest.
+    ///
+    /// # Errors
+    /// Those of [`frame`](Self::frame).
+    pub fn bent(&self, unbent: &Unbent<'_>, start: Option<&Bent>, watch: &Watch) -> Result<Option<Bent>, EngineError> {
+        let Unbent { frame, file, positions } = *unbent;
         let Some(targets) = self.targets(frame, positions, watch)? else {
             return Ok(None);
         };
@@ -194,6 +194,9 @@ impl Bending<'_> {
             Some(maps) => bound.set_targets(&maps),
             None => bound.set_places(&targets),
         };
+        if let Some(start) = start {
+            bound.begin_at(&start.displacements);
+        }
         let bent = bent.and_then(|()| settle(&mut bound, &mut displacements, usize::MAX, cancel));
         let step = bent.map_err(|error| EngineError::Solve {
             file: file.to_owned(),

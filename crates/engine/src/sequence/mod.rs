@@ -6,6 +6,7 @@
 
 mod applied;
 mod bend;
+mod bent;
 mod cache;
 mod folder;
 mod followed;
@@ -13,6 +14,7 @@ mod frame;
 mod frame_times;
 mod held;
 mod kind;
+mod leaders;
 mod leading;
 mod morphs;
 mod open;

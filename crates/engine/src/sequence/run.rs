@@ -8,9 +8,11 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, Progress};
 use rayon::prelude::*;
 
-use super::bend::{Bending, Bent};
+use super::bend::Bending;
+use super::bent::{Bent, Unbent};
 use super::cache::Cache;
 use super::frame::Frame;
+use super::leaders::Leaders;
 use super::morphs::Morphs;
 use super::report::SequenceReport;
 use super::source::Source;
@@ -111,7 +113,7 @@ impl Run<'_> {
         report: &mut SequenceReport,
     ) -> Result<Staged, EngineError> {
         let mut staged: Option<Staged> = None;
-        let of_frame = |frame: usize| self.file(frame, &frames[frame], output, beside);
+        let of_frame = |frame: usize, leaders: &Leaders| self.file((frame, &frames[frame]), leaders, output, beside);
         self.each(of_frame, report, |frame| {
             staged = Some(match staged.take() {
                 Some(staged) => staged.and(frame),
@@ -127,7 +129,7 @@ impl Run<'_> {
         self.staging.stage_pieces(to, &self.watch.cancel, |file| {
             let refuse = |error| EngineError::from(FileError::writing(&to.given, error));
             file.write_all(&cache.header()?).map_err(refuse)?;
-            let of_frame = |frame: usize| self.piece(frame, cache);
+            let of_frame = |frame: usize, leaders: &Leaders| self.piece(frame, leaders, cache);
             self.each(of_frame, report, |bytes| file.write_all(&bytes).map_err(refuse))
         })
     }
@@ -142,7 +144,7 @@ impl Run<'_> {
     ) -> Result<Staged, EngineError> {
         let files = AnimationFiles { beside, ..*files };
         let mut writer = AnimationWriter::new(files, self.watch, self.staging)?;
-        let of_frame = |frame: usize| self.displacements(frame, morphs);
+        let of_frame = |frame: usize, leaders: &Leaders| self.displacements(frame, leaders, morphs);
         self.each(of_frame, report, |displacements| writer.push(&displacements))?;
         let (staged, written) = match report.bent_frames {
             0 => writer.finish_unchanged()?,
@@ -154,11 +156,11 @@ impl Run<'_> {
     }
 
     /// Bends a frame of an animation, and gives the displacements of its drawn vertices since rest.
-    fn displacements(&self, frame: usize, morphs: &Morphs) -> Result<Done<Vec<DVec3>>, EngineError> {
+    fn displacements(&self, frame: usize, leaders: &Leaders, morphs: &Morphs) -> Result<Done<Vec<DVec3>>, EngineError> {
         self.watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
         let mut result = morphs.displacements(frame, self.rest.positions.len());
         let positions = morphs.positions(self.first, &result)?;
-        let bent = self.bending.frame(frame, &self.first.path, &positions, self.watch)?;
+        let bent = self.bend(frame, &self.first.path, &positions, leaders)?;
         if let Some(bent) = &bent {
             let drawn = self.first.model.drawn.surface_vertices();
             for (way, vertex) in result.iter_mut().zip(drawn) {
@@ -172,19 +174,50 @@ impl Run<'_> {
         })
     }
 
+    /// Bends a frame.
+    fn bend(
+        &self,
+        frame: usize,
+        file: &Path,
+        positions: &[DVec3],
+        leaders: &Leaders,
+    ) -> Result<Option<Bent>, EngineError> {
+        let unbent = Unbent { frame, file, positions };
+        self.bending.frame(&unbent, leaders, self.watch)
+    }
+
+    /// The end of a leader. A refusal is not told here: the frame itself tells it when its turn comes.
+    fn leader(&self, frame: usize) -> Option<Bent> {
+        self.watch.cancel.check().ok()?;
+        let mesh = (self.first, self.rest);
+        let unbent = Unbent {
+            frame,
+            file: &self.first.path,
+            positions: &self.source.positions(frame, mesh, self.watch).ok()?,
+        };
+        self.bending.bent(&unbent, None, self.watch).ok()?
+    }
+
     /// Does all frames, side by side in groups as large as the pool, and takes the results in order.
     fn each<T: Send>(
         &self,
-        of_frame: impl Fn(usize) -> Result<Done<T>, EngineError> + Sync,
+        of_frame: impl Fn(usize, &Leaders) -> Result<Done<T>, EngineError> + Sync,
         report: &mut SequenceReport,
         mut take: impl FnMut(T) -> Result<(), EngineError>,
     ) -> Result<(), EngineError> {
         let progress = self.watch.begin("editing the sequence");
         let count = self.source.count();
         let side_by_side = rayon::current_num_threads().max(1);
+        let mut leaders = Leaders::default();
+        let mut led = 0..0;
         for start in (0..count).step_by(side_by_side) {
+            if self.bending.is_led() && start >= led.end {
+                led = start..count.min(start + Leaders::span(side_by_side));
+                leaders = Leaders::of(led.clone(), count, |frame| self.leader(frame));
+            }
             let group = start..count.min(start + side_by_side);
-            let done: Vec<Result<Done<T>, EngineError>> = group.clone().into_par_iter().map(&of_frame).collect();
+            let done = group.clone().into_par_iter().map(|frame| of_frame(frame, &leaders));
+            let done: Vec<Result<Done<T>, EngineError>> = done.collect();
             for done in done {
                 // The first refusal in the order of frames, whatever the number of threads.
                 let done = done?;
@@ -204,15 +237,15 @@ impl Run<'_> {
     /// Reads, bends and stages a file.
     fn file(
         &self,
-        frame: usize,
-        path: &Path,
+        (frame, path): (usize, &Path),
+        leaders: &Leaders,
         output: &OutputFolder,
         beside: Option<&Destination>,
     ) -> Result<Done<Staged>, EngineError> {
         let cancel = &self.watch.cancel;
         cancel.check().map_err(|_| EngineError::Interrupted)?;
         let read = Frame::read(path, self.first, self.rest, self.watch)?;
-        let bent = self.bending.frame(frame, path, &read.positions, self.watch)?;
+        let bent = self.bend(frame, path, &read.positions, leaders)?;
         let positions = match &bent {
             Some(bent) => read.displaced(&bent.displacements),
             None => read.file.drawn.positions.clone(),
@@ -237,12 +270,10 @@ impl Run<'_> {
     }
 
     /// Reads and bends a frame of a cache.
-    fn piece(&self, frame: usize, cache: &Cache) -> Result<Done<Vec<u8>>, EngineError> {
+    fn piece(&self, frame: usize, leaders: &Leaders, cache: &Cache) -> Result<Done<Vec<u8>>, EngineError> {
         self.watch.cancel.check().map_err(|_| EngineError::Interrupted)?;
         let read = cache.frame(frame)?;
-        let bent = self
-            .bending
-            .frame(frame, &self.first.path, &read.positions, self.watch)?;
+        let bent = self.bend(frame, &self.first.path, &read.positions, leaders)?;
         let result = match &bent {
             Some(bent) => cache.displaced(read, &bent.displacements),
             None => read.bytes,

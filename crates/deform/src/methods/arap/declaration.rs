@@ -123,6 +123,11 @@ impl BoundMethod for LedSolver {
         LedSolver::rest(self);
     }
 
+    fn begin_at(&mut self, motions: &[Motion], displacements: &[DVec3]) -> bool {
+        LedSolver::begin_at(self, motions, displacements);
+        true
+    }
+
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
         Some(self.solver.energy_of(motions, displacements))
     }

@@ -101,6 +101,16 @@ impl LedSolver {
         (self.solver.state == State::Converged, energy)
     }
 
+    /// Begins the descent to `motions` at a shape, if that is lower than the blend from rest.
+    pub fn begin_at(&mut self, motions: &[Motion], displacements: &[DVec3]) {
+        self.rival.end();
+        if let Some(coarse) = &mut self.coarse {
+            coarse.aim();
+        }
+        self.hurry_corrections();
+        rayon::scope(|_| self.solver.start_at(motions, displacements));
+    }
+
     /// The next step of a new descent is a correction.
     pub(super) fn hurry_corrections(&mut self) {
         self.corrections = Corrections::after(1, RAREST);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::ArapSolver;
 use super::cells::{quad, vector};
 use super::end::End;
-use super::shape::{Guesses, Shape, narrow, wide};
+use super::shape::{Guesses, IDENTITY, Shape, narrow, wide};
 use crate::coarse::domain::ABSENT;
 use crate::descent::prescribed::Prescribed;
 use crate::descent::rule::State;
@@ -72,6 +72,31 @@ impl ArapSolver {
         self.state = State::Descending;
     }
 
+    /// Begins a descent to `motions` at a shape, or at the blend from rest if that is lower.
+    ///
+    /// Only the rotations of the shape's cells are taken: they fit another frame of the same body, whose own details one
+    /// global step then puts in their places.
+    pub(super) fn start_at(&mut self, motions: &[Motion], displacements: &[DVec3]) {
+        self.has_other_offsets = false;
+        self.leave(motions);
+        self.start_from_rest();
+        (self.until_blend, self.patience) = (0, 1);
+        let Self {
+            trial, domain, cells, ..
+        } = self;
+        for (own, &vertex) in trial.displacements.iter_mut().zip(&domain.vertices) {
+            *own = quad(displacements[vertex as usize], 0.0);
+        }
+        trial.place(&self.prescribed, motions);
+        trial.rotations.fill(IDENTITY);
+        cells.measure(trial, Guesses::Own, &mut self.scratch);
+        self.relax_trial();
+        self.evaluate_trial();
+        if self.trial.energy < self.current.energy {
+            std::mem::swap(&mut self.current, &mut self.trial);
+        }
+    }
+
     /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles at their targets,
     /// and evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
@@ -79,6 +104,11 @@ impl ArapSolver {
         if self.has_offsets {
             self.relax_trial();
         }
+        self.evaluate_trial();
+    }
+
+    /// The energy and the gradient of the trial shape.
+    fn evaluate_trial(&mut self) {
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
         self.trial.add_energy_of(&self.springs);
         self.trial.add_gradient_of(&self.springs);
