@@ -48,6 +48,7 @@ mod settings;
 mod size;
 mod sketch_stroke;
 mod smooth;
+mod smooth_image;
 mod spine;
 mod spine_tips;
 mod stiffness;
