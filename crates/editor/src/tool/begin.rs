@@ -11,6 +11,7 @@ use super::cut_curve::CutCurveStroke;
 use super::cut_line::CutLine;
 use super::flow_stroke::FlowStroke;
 use super::gesture::Gesture;
+use super::large_stroke::LargeStroke;
 use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
 use super::outline::OutlineStroke;
@@ -139,6 +140,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         }
         _ => {
             let mut stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
+            if LargeStroke::suits(context) {
+                return Some(Box::new(LargeStroke::begin(context, stroke, pointer)));
+            }
             stroke.dab(context, pointer.position_px);
             Some(Box::new(stroke))
         }

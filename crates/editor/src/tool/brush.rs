@@ -62,28 +62,29 @@ pub(crate) struct Brush {
 }
 
 impl Brush {
-    /// Calls `visit` for every vertex under the brush as it moves from one point of the viewport to another, with its
-    /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
+    /// Calls `visit` for every vertex under the brush as it moves from the first of these points of the viewport to the
+    /// others, with its distance from the brush's middle as a share of the radius; vertices may be visited more than once.
     pub(crate) fn stroke(
         &mut self,
         picking: &Picking<'_>,
-        from_px: DVec2,
-        to_px: DVec2,
+        way_px: &[DVec2],
         size: &BrushSize,
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
         // A pick needs a surface, which points don't have.
         let is_of_points = picking.model.surface.triangles.is_empty();
         if is_of_points || size.metric == BrushMetric::Through {
-            return sweep(picking, [from_px, to_px], size.radius_px, visit);
+            let moves = way_px.windows(2);
+            return moves.for_each(|ends| sweep(picking, [ends[0], ends[1]], size.radius_px, &mut visit));
         }
-        let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
-            .ceil()
-            .max(1.0) as u32;
-        let picks = (1..=steps).filter_map(|step| {
-            let position_px = from_px.lerp(to_px, f64::from(step) / f64::from(steps));
-            picking.at(position_px)
+        let places_px = way_px.windows(2).flat_map(|ends| {
+            let (from_px, to_px) = (ends[0], ends[1]);
+            let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
+                .ceil()
+                .max(1.0) as u32;
+            (1..=steps).map(move |step| from_px.lerp(to_px, f64::from(step) / f64::from(steps)))
         });
+        let picks = places_px.filter_map(|position_px| picking.at(position_px));
         match size.metric {
             BrushMetric::Screen | BrushMetric::Through => {
                 picks.for_each(|pick| self.dab(picking, &pick, size.radius_px, &mut visit))
@@ -94,7 +95,7 @@ impl Brush {
             }
             BrushMetric::Round => {
                 let picks: Vec<Pick> = picks.collect();
-                let path = Path([from_px, to_px]);
+                let path = Path(way_px);
                 self.along_surface(picking, &picks, HALF_TURN * size.radius_px, &mut |vertex, _| {
                     let seen_px = picking.sight.project(picking.position(vertex));
                     let off_px = seen_px.map_or(f64::INFINITY, |seen_px| path.distance(seen_px));
@@ -172,21 +173,24 @@ impl Brush {
     }
 }
 
-/// The way of the brush's middle between two pointer events, a segment in the viewport.
-struct Path([DVec2; 2]);
+/// The way of the brush's middle between pointer events, segments in the viewport.
+struct Path<'a>(&'a [DVec2]);
 
-impl Path {
+impl Path<'_> {
     /// The distance of a point from it, in points.
     fn distance(&self, px: DVec2) -> f64 {
-        let [from_px, to_px] = self.0;
-        let along = to_px - from_px;
-        let length_squared = along.length_squared();
-        let share = if length_squared > 0.0 {
-            ((px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        px.distance(from_px + along * share)
+        let distances = self.0.windows(2).map(|ends| {
+            let (from_px, to_px) = (ends[0], ends[1]);
+            let along = to_px - from_px;
+            let length_squared = along.length_squared();
+            let share = if length_squared > 0.0 {
+                ((px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            px.distance(from_px + along * share)
+        });
+        distances.fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -198,7 +202,8 @@ fn sweep(
     radius_px: f64,
     mut visit: impl FnMut(SurfaceVertex, f64),
 ) {
-    let path = Path([from_px, to_px]);
+    let ends_px = [from_px, to_px];
+    let path = Path(&ends_px);
     let mut meet = |vertex: SurfaceVertex, position: DVec3| {
         let Some(seen_px) = picking.sight.project(position) else {
             return;

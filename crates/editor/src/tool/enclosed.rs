@@ -1,14 +1,12 @@
 //! The vertices inside a closed line on the screen, found by a job, because visibility takes one ray per vertex.
 
-use std::sync::Arc;
-
-use glam::{DVec2, DVec3};
-use pliant_mesh::{Cancel, Cancelled, Model, Progress, SurfaceVertex};
+use glam::DVec2;
+use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
+use super::drawn_shape::DrawnShape;
 use super::mode::Depth;
-use crate::pickable::Pickable;
-use crate::view::{Camera, Picking, View};
+use crate::view::{Picking, View};
 use crate::workspace::Workspace;
 
 /// The number of vertices tested between two updates of the progress.
@@ -18,12 +16,7 @@ const BAND_PX: f64 = 4.0;
 
 /// The search with all its data.
 pub(super) struct Search {
-    model: Arc<Model>,
-    displacements: Arc<Vec<DVec3>>,
-    pickable: Pickable,
-    camera: Camera,
-    viewport_px: DVec2,
-    is_current: bool,
+    shape: DrawnShape,
     line: ClosedLine,
     depth: Depth,
 }
@@ -32,12 +25,7 @@ impl Search {
     /// A search in the drawn shape; `None` while its hierarchy is not ready, or for a line without an inside.
     pub(super) fn of(workspace: &Workspace, view: &View, corners_px: &[DVec2], depth: Depth) -> Option<Self> {
         Some(Self {
-            model: Arc::clone(workspace.model()?),
-            displacements: Arc::clone(workspace.document.from_file()),
-            pickable: workspace.computed().pickable().cloned()?,
-            camera: *view.camera(),
-            viewport_px: view.viewport_px(),
-            is_current: workspace.jobs.is_picking_current(),
+            shape: DrawnShape::of(workspace, view)?,
             line: ClosedLine::of(corners_px)?,
             depth,
         })
@@ -48,14 +36,8 @@ impl Search {
     /// # Errors
     /// It was cancelled.
     pub(super) fn run(&self, progress: &Progress, cancel: &Cancel) -> Result<Vec<SurfaceVertex>, Cancelled> {
-        let picking = Picking::of(
-            &self.model,
-            &self.displacements,
-            &self.pickable,
-            (&self.camera, self.viewport_px),
-            self.is_current,
-        );
-        let count = self.model.surface.positions.len();
+        let picking = self.shape.picking();
+        let count = self.shape.model.surface.positions.len();
         let mut found = Vec::new();
         for start in (0..count).step_by(BATCH) {
             cancel.check()?;

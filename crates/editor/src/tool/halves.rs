@@ -102,6 +102,19 @@ impl Halves {
         new
     }
 
+    /// Whether a vertex' place in the image of the given ones is uncertain: it was not given itself, and is no
+    /// counterpart where the shape is its own mirror image.
+    pub(super) fn is_uncertain(&self, vertex: SurfaceVertex) -> bool {
+        let position = |vertex: SurfaceVertex| self.model.surface.positions[vertex.index()];
+        let image = self.sides.plane.mirrored(position(vertex));
+        let is_exact = |other: SurfaceVertex| {
+            let around = self.model.topology.neighbours(other).iter();
+            let longest = around.map(|beside| position(other).distance(position(*beside)));
+            position(other).distance(image) <= longest.fold(0.0, f64::max)
+        };
+        !self.is_given[vertex.index()] && !self.sides.opposite([vertex]).any(is_exact)
+    }
+
     /// All vertices that it was given.
     pub(super) fn given(&self) -> &[SurfaceVertex] {
         &self.given

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use pliant_mesh::SurfaceVertex;
 
 use super::halves::{Half, Halves, NO_TWIN, State, is_twin};
+use super::smooth_image::smooth_image;
 use crate::document::{Document, HandleId, Paint, link_twins};
 use crate::jobs::BothSides;
 use crate::workspace::{Workspace, members};
@@ -111,6 +112,34 @@ impl OtherSide {
         first != 0.0 && beyond.all(|other| other * first > 0.0)
     }
 
+    /// Smooths the rim of what was painted on the other side, where that is off by some edges.
+    pub(super) fn smooth(&self, workspace: &mut Workspace, own: Paint, before: &Document) {
+        let (Paint::Handle(id), Some(halves), Some(model)) = (own, &self.halves, workspace.model().cloned()) else {
+            return;
+        };
+        let image = match (halves.state(), self.twin) {
+            (State::One, _) => id,
+            (_, Some(twin)) if self.is_made => twin,
+            _ => return,
+        };
+        let paint = Arc::clone(&workspace.document.paint);
+        let is_in = |vertex: SurfaceVertex| paint[vertex.index()] == Paint::Handle(image);
+        let may_change = |vertex: SurfaceVertex| {
+            let is_another = matches!(paint[vertex.index()], Paint::Handle(_)) && !is_in(vertex);
+            !is_another && halves.is_uncertain(vertex) && workspace.vertex_access.may_be_painted(vertex.index())
+        };
+        let vertices = members(&workspace.document, image);
+        let changed = smooth_image(&model.topology, &vertices, is_in, may_change);
+        let painted = changed.into_iter().map(|(vertex, is_inside)| match is_inside {
+            true => (vertex, Paint::Handle(image)),
+            false => (vertex, former(before, vertex)),
+        });
+        let painted: Vec<(SurfaceVertex, Paint)> = painted.collect();
+        // A shared one would be copied.
+        drop(paint);
+        workspace.document.paint_vertices(painted);
+    }
+
     /// Takes the paint of a twin that has hardly a vertex off again, because the other side lacks the part.
     pub(super) fn drop_scraps(&self, workspace: &mut Workspace, own: Paint, before: &Document) {
         let (Paint::Handle(id), Some(twin), Some(halves)) = (own, self.twin, &self.halves) else {
@@ -119,9 +148,8 @@ impl OtherSide {
         let scraps = members(&workspace.document, twin);
         let is_apart = self.is_made && halves.state() != State::One;
         if is_apart && !is_twin(scraps.len(), members(&workspace.document, id).len()) {
-            let former = before.paint();
-            let restored: Vec<(SurfaceVertex, Paint)> =
-                scraps.iter().map(|vertex| (*vertex, former[vertex.index()])).collect();
+            let restored = scraps.into_iter().map(|vertex| (vertex, former(before, vertex)));
+            let restored: Vec<(SurfaceVertex, Paint)> = restored.collect();
             workspace.document.paint_vertices(restored);
             workspace.refuse(NO_TWIN);
         }
@@ -138,4 +166,9 @@ impl OtherSide {
             link_twins(document, id, twin, self.sides.plane);
         }
     }
+}
+
+/// A vertex' paint before the stroke.
+fn former(before: &Document, vertex: SurfaceVertex) -> Paint {
+    before.paint()[vertex.index()]
 }

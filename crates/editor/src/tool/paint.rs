@@ -90,6 +90,13 @@ impl PaintStroke {
         }
     }
 
+    /// Paints those of the vertices that are not painted like that yet, and their partners on the other side.
+    pub fn take_new(&mut self, workspace: &mut Workspace, mut met: Vec<SurfaceVertex>) {
+        let paint = workspace.document.paint();
+        met.retain(|vertex| paint[vertex.index()] != self.paint);
+        self.take(workspace, met);
+    }
+
     /// Paints vertices, and their partners on the other side.
     pub fn take(&mut self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
         if let Some(other_side) = &mut self.other_side {
@@ -120,13 +127,12 @@ impl Stroke for PaintStroke {
     fn dab(&mut self, context: &mut Context<'_>, _: &Document, way_px: [DVec2; 2]) {
         let mut met = Vec::new();
         meet(context, way_px, |vertex, _| met.push(vertex));
-        let paint = context.workspace.document.paint();
-        met.retain(|vertex| paint[vertex.index()] != self.paint);
-        self.take(context.workspace, met);
+        self.take_new(context.workspace, met);
     }
 
     fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
         if let Some(other_side) = &self.other_side {
+            other_side.smooth(workspace, self.paint, before);
             other_side.drop_scraps(workspace, self.paint, before);
         }
         tidy_handles(workspace, before);

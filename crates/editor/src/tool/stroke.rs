@@ -73,9 +73,14 @@ impl<S: Stroke> StrokeGesture<S> {
         self.stroke.dab(context, self.transaction.before(), [from_px, to_px]);
     }
 
+    /// Changes further vertices.
+    pub fn go_on_with(&mut self, workspace: &mut Workspace, change: impl FnOnce(&mut S, &mut Workspace)) {
+        change(&mut self.stroke, workspace);
+    }
+
     /// Changes further vertices, and ends.
     pub fn finish_with(&mut self, workspace: &mut Workspace, change: impl FnOnce(&mut S, &mut Workspace)) {
-        change(&mut self.stroke, workspace);
+        self.go_on_with(workspace, change);
         self.stroke.finish(workspace, self.transaction.before());
         workspace.commit(&self.transaction);
     }
@@ -132,10 +137,10 @@ impl<S: Stroke> Gesture for StrokeGesture<S> {
 
 /// Calls `visit` for every vertex under the brush as it moves from one point of the viewport to another, with its
 /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
-pub(super) fn meet(context: &mut Context<'_>, [from_px, to_px]: [DVec2; 2], visit: impl FnMut(SurfaceVertex, f64)) {
+pub(super) fn meet(context: &mut Context<'_>, way_px: [DVec2; 2], visit: impl FnMut(SurfaceVertex, f64)) {
     if let Some(picking) = context.workspace.picking(context.view) {
         let size = &context.settings.brush();
-        context.brush.stroke(&picking, from_px, to_px, size, visit);
+        context.brush.stroke(&picking, &way_px, size, visit);
     }
 }
 

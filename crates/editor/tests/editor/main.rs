@@ -25,6 +25,7 @@ mod intersections;
 mod joints;
 mod kept_shape;
 mod large_mesh;
+mod large_strokes;
 mod lateness;
 mod laws;
 mod memory_limit;
