@@ -41,8 +41,9 @@ pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
 /// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// Each triangle's own velocity and its carried one, times its area.
-    fields: Vec<[DVec2; 2]>,
+    /// Room for four numbers of each triangle: its own velocity and its carried one, times its area; later its terms in
+    /// the divergence.
+    pub of_triangles: Vec<f64>,
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
     /// The velocity that is carried.
@@ -60,7 +61,7 @@ pub(crate) struct Scratch {
 impl Scratch {
     fn resize(&mut self, fluid: &Fluid<'_>, has_dye: bool) {
         let count = fluid.vertex_count();
-        self.fields.resize(fluid.triangle_count(), [DVec2::ZERO; 2]);
+        self.of_triangles.resize(4 * fluid.triangle_count(), 0.0);
         self.own.resize(count, DVec2::ZERO);
         self.carried.resize(count, DVec2::ZERO);
         self.first.resize(count, DVec2::ZERO);
@@ -87,15 +88,17 @@ pub(crate) fn advect(
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
     scratch.resize(fluid, !dye.is_empty());
-    let own_and_half_pushed = |(triangle, fields): (usize, &mut [DVec2; 2])| {
+    let own_and_half_pushed = |(triangle, fields): (usize, &mut [f64; 4])| {
         let chart = &fluid.domain.charts[triangle];
         let own = velocity[triangle] * chart.area();
         let values = fluid.corners(triangle).map(|corner| pressure[corner]);
-        *fields = [own, own - 0.5 * steps * chart.gradient_area(values)];
+        let carried = own - 0.5 * steps * chart.gradient_area(values);
+        *fields = [own.x, own.y, carried.x, carried.y];
     };
-    let fields = scratch.fields.par_iter_mut().with_min_len(CHUNK).enumerate();
-    fields.for_each(own_and_half_pushed);
-    fluid.to_vertices(&scratch.fields, [&mut scratch.own, &mut scratch.carried]);
+    let (fields, _) = scratch.of_triangles.as_chunks_mut();
+    let each = fields.par_iter_mut().with_min_len(CHUNK).enumerate();
+    each.for_each(own_and_half_pushed);
+    fluid.to_vertices(fields, [&mut scratch.own, &mut scratch.carried]);
     backward(fluid, dye, seconds, scratch, cancel)?;
     match advection {
         Advection::FirstOrder => {
@@ -139,6 +142,7 @@ fn backward(
         .enumerate()
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
             cancel.check()?;
+            fluid.read_ahead(chunk * CHUNK..chunk * CHUNK + first.len());
             arch.dispatch(Backward {
                 fields,
                 start: chunk * CHUNK,
@@ -232,6 +236,7 @@ fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cance
     let arch = vectors();
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
         cancel.check()?;
+        fluid.read_ahead(chunk * CHUNK..chunk * CHUNK + change.len());
         arch.dispatch(Correction {
             fields,
             start: chunk * CHUNK,

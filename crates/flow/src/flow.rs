@@ -197,7 +197,8 @@ impl<'a> Flow<'a> {
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
         self.speeds = None;
-        self.pressure.project_added(&self.fluid, &mut self.velocity)?;
+        let room = &mut self.scratch.of_triangles;
+        self.pressure.project_added(&self.fluid, &mut self.velocity, room)?;
         self.has_added = false;
         Ok(())
     }
@@ -255,7 +256,8 @@ impl<'a> Flow<'a> {
             friction.smooth(fluid, settings.viscosity * seconds, velocity);
         }
         let fastest = allowed.iter().copied().fold(0.0, f64::max);
-        self.pressure.project(fluid, velocity, fastest)?;
+        self.pressure
+            .project(fluid, velocity, fastest, &mut scratch.of_triangles)?;
         self.speeds = Some(cap(fluid, &allowed, velocity));
         Ok(())
     }
