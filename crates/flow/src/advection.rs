@@ -41,9 +41,9 @@ pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
 /// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// Room for four numbers of each triangle: its own velocity and its carried one, times its area; later its terms in
-    /// the divergence.
-    pub of_triangles: Vec<f64>,
+    /// Room for what lives for a part of a step: each triangle's own velocity and its carried one, times its area; then
+    /// the dye after a first-order step and the new dye; then the terms of the divergence.
+    pub room: Vec<f64>,
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
     /// The velocity that is carried.
@@ -54,26 +54,21 @@ pub(crate) struct Scratch {
     pub change: Vec<DVec2>,
     /// The triangle from which the fluid comes.
     source: Vec<u32>,
-    first_dye: Vec<Dye>,
-    pub dye: Vec<Dye>,
 }
 
 impl Scratch {
-    fn resize(&mut self, fluid: &Fluid<'_>, has_dye: bool) {
+    fn resize(&mut self, fluid: &Fluid<'_>) {
         let count = fluid.vertex_count();
-        self.of_triangles.resize(4 * fluid.triangle_count(), 0.0);
+        self.room.resize(4 * fluid.triangle_count().max(2 * count), 0.0);
         self.own.resize(count, DVec2::ZERO);
         self.carried.resize(count, DVec2::ZERO);
         self.first.resize(count, DVec2::ZERO);
         self.change.resize(count, DVec2::ZERO);
         self.source.resize(count, 0);
-        let dyed = if has_dye { count } else { 0 };
-        self.first_dye.resize(dyed, Dye::default());
-        self.dye.resize(dyed, Dye::default());
     }
 }
 
-/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `scratch.dye` is free afterwards.
+/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `scratch.room` is free afterwards.
 ///
 /// Fluid on its way is also pushed by the pressure. Half of that comes before the way and half after it, or a turning
 /// sphere would slow by a share of the step. `pressure` is that of the last step, whose gradient the velocity has lost,
@@ -82,12 +77,12 @@ pub(crate) fn advect(
     fluid: &Fluid<'_>,
     (pressure, steps): (&[f64], f64),
     velocity: &mut [DVec2],
-    dye: &mut Vec<Dye>,
+    dye: &mut [Dye],
     (seconds, advection): (f64, Advection),
     scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    scratch.resize(fluid, !dye.is_empty());
+    scratch.resize(fluid);
     let own_and_half_pushed = |(triangle, fields): (usize, &mut [f64; 4])| {
         let chart = &fluid.domain.charts[triangle];
         let own = velocity[triangle] * chart.area();
@@ -95,24 +90,31 @@ pub(crate) fn advect(
         let carried = own - 0.5 * steps * chart.gradient_area(values);
         *fields = [own.x, own.y, carried.x, carried.y];
     };
-    let (fields, _) = scratch.of_triangles.as_chunks_mut();
+    let (fields, _) = scratch.room[..4 * fluid.triangle_count()].as_chunks_mut();
     let each = fields.par_iter_mut().with_min_len(CHUNK).enumerate();
     each.for_each(own_and_half_pushed);
     fluid.to_vertices(fields, [&mut scratch.own, &mut scratch.carried]);
-    backward(fluid, dye, seconds, scratch, cancel)?;
-    match advection {
+    let mut room = std::mem::take(&mut scratch.room);
+    let (first_dye, new_dye) = room.split_at_mut(4 * dye.len());
+    let [first_dye, new_dye] = [first_dye, &mut new_dye[..4 * dye.len()]].map(|room| room.as_chunks_mut().0);
+    let carried = backward(fluid, dye, seconds, scratch, first_dye, cancel);
+    let carried = carried.and_then(|()| match advection {
         Advection::FirstOrder => {
             let pairs = scratch.change.par_iter_mut().zip(&scratch.first).zip(&scratch.carried);
             pairs
                 .with_min_len(CHUNK)
                 .for_each(|((change, first), carried)| *change = first - carried);
-            std::mem::swap(dye, &mut scratch.first_dye);
+            dye.copy_from_slice(first_dye);
+            Ok(())
         }
         Advection::SecondOrder => {
-            correct(fluid, dye, scratch, cancel)?;
-            std::mem::swap(dye, &mut scratch.dye);
+            correct(fluid, dye, scratch, (first_dye, new_dye), cancel)?;
+            dye.copy_from_slice(new_dye);
+            Ok(())
         }
-    }
+    });
+    scratch.room = room;
+    carried?;
     fluid.add_to_triangles(&scratch.change, velocity);
     Ok(())
 }
@@ -123,6 +125,7 @@ fn backward(
     dye: &[Dye],
     seconds: f64,
     scratch: &mut Scratch,
+    first_dye: &mut [Dye],
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
     let fields = Fields {
@@ -131,7 +134,7 @@ fn backward(
         carried: &scratch.carried,
         dye,
     };
-    let dyes = chunks_of(&mut scratch.first_dye, fluid.vertex_count());
+    let dyes = chunks_of(first_dye, fluid.vertex_count());
     let velocities = scratch
         .first
         .par_chunks_mut(CHUNK)
@@ -216,22 +219,31 @@ impl WithSimd for Backward<'_> {
             }
             self.source[from..][..count].copy_from_slice(&ends.triangles[..count]);
             for (i, first_dye) in self.first_dye.iter_mut().skip(from).take(count).enumerate() {
-                *first_dye = dye_at(fluid, &ends, i, dye);
+                *first_dye = match ends.is_bare(i) {
+                    true => dye[vertex + i],
+                    false => dye_at(fluid, &ends, i, dye),
+                };
             }
         }
     }
 }
 
 /// Takes half the error of going forth and back off the first-order step.
-fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cancel) -> Result<(), Cancelled> {
+fn correct(
+    fluid: &Fluid<'_>,
+    dye: &[Dye],
+    scratch: &mut Scratch,
+    (first_dye, new_dye): (&[Dye], &mut [Dye]),
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
     let fields = Fields {
         fluid,
         own: &scratch.own,
         carried: &scratch.carried,
         dye,
     };
-    let (first, source, first_dye) = (&*scratch.first, &*scratch.source, &*scratch.first_dye);
-    let dyes = chunks_of(&mut scratch.dye, fluid.vertex_count());
+    let (first, source) = (&*scratch.first, &*scratch.source);
+    let dyes = chunks_of(new_dye, fluid.vertex_count());
     let chunks = scratch.change.par_chunks_mut(CHUNK).zip(dyes);
     let arch = vectors();
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
@@ -288,6 +300,10 @@ impl WithSimd for Correction<'_> {
             }
             for (i, new_dye) in self.new_dye.iter_mut().skip(from).take(count).enumerate() {
                 let vertex = start + i;
+                if ends.is_bare(i) {
+                    *new_dye = dye[vertex];
+                    continue;
+                }
                 let (returned, first) = (dye_at(fluid, &ends, i, self.first_dye), self.first_dye[vertex]);
                 let corrected: Dye = std::array::from_fn(|k| first[k] + 0.5 * (dye[vertex][k] - returned[k]));
                 let [a, b, c] = fluid.corners(self.source[vertex] as usize).map(|corner| dye[corner]);

@@ -197,7 +197,7 @@ impl<'a> Flow<'a> {
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
         self.speeds = None;
-        let room = &mut self.scratch.of_triangles;
+        let room = &mut self.scratch.room;
         self.pressure.project_added(&self.fluid, &mut self.velocity, room)?;
         self.has_added = false;
         Ok(())
@@ -238,7 +238,8 @@ impl<'a> Flow<'a> {
             cancel,
         )?;
         if !dye.is_empty() {
-            conserve(fluid, &self.poured, dye, &mut scratch.dye);
+            let (room, _) = scratch.room[..4 * dye.len()].as_chunks_mut();
+            conserve(fluid, &self.poured, dye, room);
         }
         cancel.check()?;
         if settings.has_force() {
@@ -256,8 +257,7 @@ impl<'a> Flow<'a> {
             friction.smooth(fluid, settings.viscosity * seconds, velocity);
         }
         let fastest = allowed.iter().copied().fold(0.0, f64::max);
-        self.pressure
-            .project(fluid, velocity, fastest, &mut scratch.of_triangles)?;
+        self.pressure.project(fluid, velocity, fastest, &mut scratch.room)?;
         self.speeds = Some(cap(fluid, &allowed, velocity));
         Ok(())
     }

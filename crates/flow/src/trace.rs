@@ -49,6 +49,12 @@ impl Ends {
             rotations: [[1.0; LANES], [0.0; LANES]],
         }
     }
+
+    /// Whether a way began at a bare vertex, and has no end.
+    #[inline(always)]
+    pub fn is_bare(&self, i: usize) -> bool {
+        self.weights.iter().all(|weights| weights[i] == 0.0)
+    }
 }
 
 /// A way that has come into a triangle.
