@@ -16,27 +16,13 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::corners::Corners;
+use crate::dye::{Dye, dye_at, larger, smaller};
 use crate::fluid::Fluid;
 use crate::lanes::{LANES, Vectors, change, put, vector};
 use crate::plane::turned_back;
 use crate::settings::Advection;
 use crate::sums::CHUNK;
 use crate::trace::Ends;
-
-/// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
-pub(crate) type Dye = [f64; 4];
-
-/// The larger value of each channel; of two that are numbers, in one instruction, unlike [`f64::max`].
-#[inline(always)]
-pub(crate) fn larger(a: Dye, b: Dye) -> Dye {
-    std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
-}
-
-/// The smaller value of each channel.
-#[inline(always)]
-pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
-    std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
-}
 
 /// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
@@ -344,12 +330,4 @@ fn vectors_at(fluid: &Fluid<'_>, ends: &Ends, count: usize, field: &[DVec2], cor
     let mut vectors = corners.interpolate(&ends.weights);
     change(&mut vectors, |i, there| turned_back(vector(&ends.rotations, i), there));
     vectors
-}
-
-/// The dye at the end of a way.
-#[inline(always)]
-fn dye_at(fluid: &Fluid<'_>, ends: &Ends, i: usize, dye: &[Dye]) -> Dye {
-    let [a, b, c] = fluid.corners(ends.triangles[i] as usize).map(|corner| dye[corner]);
-    let [u, v, w] = [0, 1, 2].map(|k| ends.weights[k][i]);
-    std::array::from_fn(|k| u * a[k] + v * b[k] + w * c[k])
 }
