@@ -1,8 +1,8 @@
 //! Times a flow: `flow_steps VERTICES THREADS [STEPS]`.
 //!
 //! Dye swirls on a bumpy torus. One JSON object: binding and the median step in milliseconds, the memory that the flow
-//! takes beside the mesh, and that of the mesh, in megabytes (0 where the system does not tell), and the divergence at
-//! the end relative to the velocity over the mean edge.
+//! takes beside the mesh, that of the Laplacian's factor in it, and that of the mesh, in megabytes (0 where the system
+//! does not tell), and the divergence at the end relative to the velocity over the mean edge.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 use std::time::Instant;
@@ -56,9 +56,10 @@ fn measure(vertices: usize, threads: usize, steps: usize) {
     let unit = (2.0 * flow.kinetic_energy()).sqrt() / flow.mean_edge();
     println!(
         "{{\"vertices\": {}, \"threads\": {threads}, \"bind_ms\": {bind_ms:.0}, \"step_ms\": {:.1}, \
-         \"flow_mb\": {flow_mb:.0}, \"mesh_mb\": {mesh_mb:.0}, \"divergence\": {:.1e}}}",
+         \"flow_mb\": {flow_mb:.0}, \"factor_mb\": {:.0}, \"mesh_mb\": {mesh_mb:.0}, \"divergence\": {:.1e}}}",
         positions.len(),
         times[times.len() / 2],
+        flow.factor_len() as f64 * 8.0 / 1024.0 / 1024.0,
         flow.divergence() / unit,
     );
 }

@@ -16,6 +16,7 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::corners::Corners;
+use crate::dye::{Dye, dye_at, larger, smaller};
 use crate::fluid::Fluid;
 use crate::lanes::{LANES, Vectors, change, put, vector};
 use crate::plane::turned_back;
@@ -23,26 +24,12 @@ use crate::settings::Advection;
 use crate::sums::CHUNK;
 use crate::trace::Ends;
 
-/// Dye at a vertex: red, green and blue, multiplied by the coverage, and the coverage, each from 0 to 1.
-pub(crate) type Dye = [f64; 4];
-
-/// The larger value of each channel; of two that are numbers, in one instruction, unlike [`f64::max`].
-#[inline(always)]
-pub(crate) fn larger(a: Dye, b: Dye) -> Dye {
-    std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
-}
-
-/// The smaller value of each channel.
-#[inline(always)]
-pub(crate) fn smaller(a: Dye, b: Dye) -> Dye {
-    std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
-}
-
 /// Fields that are kept from step to step: at the vertices, but for the first one.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// Each triangle's own velocity and its carried one, times its area.
-    fields: Vec<[DVec2; 2]>,
+    /// Room for what lives for a part of a step: each triangle's own velocity and its carried one, times its area; then
+    /// the dye after a first-order step and the new dye; then the terms of the divergence.
+    pub room: Vec<f64>,
     /// The velocity, in the tangent planes.
     pub own: Vec<DVec2>,
     /// The velocity that is carried.
@@ -53,26 +40,21 @@ pub(crate) struct Scratch {
     pub change: Vec<DVec2>,
     /// The triangle from which the fluid comes.
     source: Vec<u32>,
-    first_dye: Vec<Dye>,
-    pub dye: Vec<Dye>,
 }
 
 impl Scratch {
-    fn resize(&mut self, fluid: &Fluid<'_>, has_dye: bool) {
+    fn resize(&mut self, fluid: &Fluid<'_>) {
         let count = fluid.vertex_count();
-        self.fields.resize(fluid.triangle_count(), [DVec2::ZERO; 2]);
+        self.room.resize(4 * fluid.triangle_count().max(2 * count), 0.0);
         self.own.resize(count, DVec2::ZERO);
         self.carried.resize(count, DVec2::ZERO);
         self.first.resize(count, DVec2::ZERO);
         self.change.resize(count, DVec2::ZERO);
         self.source.resize(count, 0);
-        let dyed = if has_dye { count } else { 0 };
-        self.first_dye.resize(dyed, Dye::default());
-        self.dye.resize(dyed, Dye::default());
     }
 }
 
-/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `scratch.dye` is free afterwards.
+/// Carries `velocity`, and `dye` unless it is empty, for `seconds`. `scratch.room` is free afterwards.
 ///
 /// Fluid on its way is also pushed by the pressure. Half of that comes before the way and half after it, or a turning
 /// sphere would slow by a share of the step. `pressure` is that of the last step, whose gradient the velocity has lost,
@@ -81,35 +63,44 @@ pub(crate) fn advect(
     fluid: &Fluid<'_>,
     (pressure, steps): (&[f64], f64),
     velocity: &mut [DVec2],
-    dye: &mut Vec<Dye>,
+    dye: &mut [Dye],
     (seconds, advection): (f64, Advection),
     scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    scratch.resize(fluid, !dye.is_empty());
-    let own_and_half_pushed = |(triangle, fields): (usize, &mut [DVec2; 2])| {
+    scratch.resize(fluid);
+    let own_and_half_pushed = |(triangle, fields): (usize, &mut [f64; 4])| {
         let chart = &fluid.domain.charts[triangle];
         let own = velocity[triangle] * chart.area();
         let values = fluid.corners(triangle).map(|corner| pressure[corner]);
-        *fields = [own, own - 0.5 * steps * chart.gradient_area(values)];
+        let carried = own - 0.5 * steps * chart.gradient_area(values);
+        *fields = [own.x, own.y, carried.x, carried.y];
     };
-    let fields = scratch.fields.par_iter_mut().with_min_len(CHUNK).enumerate();
-    fields.for_each(own_and_half_pushed);
-    fluid.to_vertices(&scratch.fields, [&mut scratch.own, &mut scratch.carried]);
-    backward(fluid, dye, seconds, scratch, cancel)?;
-    match advection {
+    let (fields, _) = scratch.room[..4 * fluid.triangle_count()].as_chunks_mut();
+    let each = fields.par_iter_mut().with_min_len(CHUNK).enumerate();
+    each.for_each(own_and_half_pushed);
+    fluid.to_vertices(fields, [&mut scratch.own, &mut scratch.carried]);
+    let mut room = std::mem::take(&mut scratch.room);
+    let (first_dye, new_dye) = room.split_at_mut(4 * dye.len());
+    let [first_dye, new_dye] = [first_dye, &mut new_dye[..4 * dye.len()]].map(|room| room.as_chunks_mut().0);
+    let carried = backward(fluid, dye, seconds, scratch, first_dye, cancel);
+    let carried = carried.and_then(|()| match advection {
         Advection::FirstOrder => {
             let pairs = scratch.change.par_iter_mut().zip(&scratch.first).zip(&scratch.carried);
             pairs
                 .with_min_len(CHUNK)
                 .for_each(|((change, first), carried)| *change = first - carried);
-            std::mem::swap(dye, &mut scratch.first_dye);
+            dye.copy_from_slice(first_dye);
+            Ok(())
         }
         Advection::SecondOrder => {
-            correct(fluid, dye, scratch, cancel)?;
-            std::mem::swap(dye, &mut scratch.dye);
+            correct(fluid, dye, scratch, (first_dye, new_dye), cancel)?;
+            dye.copy_from_slice(new_dye);
+            Ok(())
         }
-    }
+    });
+    scratch.room = room;
+    carried?;
     fluid.add_to_triangles(&scratch.change, velocity);
     Ok(())
 }
@@ -120,6 +111,7 @@ fn backward(
     dye: &[Dye],
     seconds: f64,
     scratch: &mut Scratch,
+    first_dye: &mut [Dye],
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
     let fields = Fields {
@@ -128,7 +120,7 @@ fn backward(
         carried: &scratch.carried,
         dye,
     };
-    let dyes = chunks_of(&mut scratch.first_dye, fluid.vertex_count());
+    let dyes = chunks_of(first_dye, fluid.vertex_count());
     let velocities = scratch
         .first
         .par_chunks_mut(CHUNK)
@@ -139,6 +131,7 @@ fn backward(
         .enumerate()
         .try_for_each(|(chunk, (((first, forward), source), first_dye))| {
             cancel.check()?;
+            fluid.read_ahead(chunk * CHUNK..chunk * CHUNK + first.len());
             arch.dispatch(Backward {
                 fields,
                 start: chunk * CHUNK,
@@ -212,26 +205,36 @@ impl WithSimd for Backward<'_> {
             }
             self.source[from..][..count].copy_from_slice(&ends.triangles[..count]);
             for (i, first_dye) in self.first_dye.iter_mut().skip(from).take(count).enumerate() {
-                *first_dye = dye_at(fluid, &ends, i, dye);
+                *first_dye = match ends.is_bare(i) {
+                    true => dye[vertex + i],
+                    false => dye_at(fluid, &ends, i, dye),
+                };
             }
         }
     }
 }
 
 /// Takes half the error of going forth and back off the first-order step.
-fn correct(fluid: &Fluid<'_>, dye: &[Dye], scratch: &mut Scratch, cancel: &Cancel) -> Result<(), Cancelled> {
+fn correct(
+    fluid: &Fluid<'_>,
+    dye: &[Dye],
+    scratch: &mut Scratch,
+    (first_dye, new_dye): (&[Dye], &mut [Dye]),
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
     let fields = Fields {
         fluid,
         own: &scratch.own,
         carried: &scratch.carried,
         dye,
     };
-    let (first, source, first_dye) = (&*scratch.first, &*scratch.source, &*scratch.first_dye);
-    let dyes = chunks_of(&mut scratch.dye, fluid.vertex_count());
+    let (first, source) = (&*scratch.first, &*scratch.source);
+    let dyes = chunks_of(new_dye, fluid.vertex_count());
     let chunks = scratch.change.par_chunks_mut(CHUNK).zip(dyes);
     let arch = vectors();
     chunks.enumerate().try_for_each(|(chunk, (change, new_dye))| {
         cancel.check()?;
+        fluid.read_ahead(chunk * CHUNK..chunk * CHUNK + change.len());
         arch.dispatch(Correction {
             fields,
             start: chunk * CHUNK,
@@ -283,6 +286,10 @@ impl WithSimd for Correction<'_> {
             }
             for (i, new_dye) in self.new_dye.iter_mut().skip(from).take(count).enumerate() {
                 let vertex = start + i;
+                if ends.is_bare(i) {
+                    *new_dye = dye[vertex];
+                    continue;
+                }
                 let (returned, first) = (dye_at(fluid, &ends, i, self.first_dye), self.first_dye[vertex]);
                 let corrected: Dye = std::array::from_fn(|k| first[k] + 0.5 * (dye[vertex][k] - returned[k]));
                 let [a, b, c] = fluid.corners(self.source[vertex] as usize).map(|corner| dye[corner]);
@@ -323,12 +330,4 @@ fn vectors_at(fluid: &Fluid<'_>, ends: &Ends, count: usize, field: &[DVec2], cor
     let mut vectors = corners.interpolate(&ends.weights);
     change(&mut vectors, |i, there| turned_back(vector(&ends.rotations, i), there));
     vectors
-}
-
-/// The dye at the end of a way.
-#[inline(always)]
-fn dye_at(fluid: &Fluid<'_>, ends: &Ends, i: usize, dye: &[Dye]) -> Dye {
-    let [a, b, c] = fluid.corners(ends.triangles[i] as usize).map(|corner| dye[corner]);
-    let [u, v, w] = [0, 1, 2].map(|k| ends.weights[k][i]);
-    std::array::from_fn(|k| u * a[k] + v * b[k] + w * c[k])
 }

@@ -7,7 +7,7 @@
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
-use crate::advection::{Dye, larger, smaller};
+use crate::dye::{Dye, larger, smaller};
 use crate::fluid::Fluid;
 use crate::sums::{CHUNK, sums};
 

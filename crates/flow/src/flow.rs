@@ -7,8 +7,10 @@ use pliant_deform::{Budget, Ordering, PoissonEquation};
 use pliant_mesh::{Cancel, Model, Progress, Surface, Topology};
 use rayon::prelude::*;
 
-use crate::advection::{Dye, Scratch, advect};
+use crate::advection::{Scratch, advect};
 use crate::conservation::{conserve, integrals};
+use crate::dye::Dye;
+use crate::energy::{cap, check_finite};
 use crate::error::FlowError;
 use crate::fluid::Fluid;
 use crate::forces::{confine, pull};
@@ -197,7 +199,8 @@ impl<'a> Flow<'a> {
     /// If the pressure can't be found.
     pub fn project(&mut self) -> Result<(), FlowError> {
         self.speeds = None;
-        self.pressure.project_added(&self.fluid, &mut self.velocity)?;
+        let room = &mut self.scratch.room;
+        self.pressure.project_added(&self.fluid, &mut self.velocity, room)?;
         self.has_added = false;
         Ok(())
     }
@@ -237,7 +240,8 @@ impl<'a> Flow<'a> {
             cancel,
         )?;
         if !dye.is_empty() {
-            conserve(fluid, &self.poured, dye, &mut scratch.dye);
+            let (room, _) = scratch.room[..4 * dye.len()].as_chunks_mut();
+            conserve(fluid, &self.poured, dye, room);
         }
         cancel.check()?;
         if settings.has_force() {
@@ -255,7 +259,7 @@ impl<'a> Flow<'a> {
             friction.smooth(fluid, settings.viscosity * seconds, velocity);
         }
         let fastest = allowed.iter().copied().fold(0.0, f64::max);
-        self.pressure.project(fluid, velocity, fastest)?;
+        self.pressure.project(fluid, velocity, fastest, &mut scratch.room)?;
         self.speeds = Some(cap(fluid, &allowed, velocity));
         Ok(())
     }
@@ -334,28 +338,4 @@ impl<'a> Flow<'a> {
     pub fn factor_len(&self) -> usize {
         self.pressure.factor_len()
     }
-}
-
-fn check_finite(speeds: &[f64]) -> Result<(), FlowError> {
-    match speeds.iter().all(|speed| speed.is_finite()) {
-        true => Ok(()),
-        false => Err(FlowError::NotFinite),
-    }
-}
-
-/// Slows components that are faster than allowed: advection may have given them kinetic energy. Returns the norm of the
-/// velocity on each.
-fn cap(fluid: &Fluid<'_>, allowed: &[f64], velocity: &mut [DVec2]) -> Vec<f64> {
-    let mut speeds = fluid.speeds(velocity);
-    let factor = |(&allowed, &speed): (&f64, &f64)| if speed > allowed { allowed / speed } else { 1.0 };
-    let factors: Vec<f64> = allowed.iter().zip(&speeds).map(factor).collect();
-    if factors.iter().all(|factor| *factor == 1.0) {
-        return speeds;
-    }
-    for (speed, &allowed) in speeds.iter_mut().zip(allowed) {
-        *speed = speed.min(allowed);
-    }
-    let slow = |(triangle, velocity): (usize, &mut DVec2)| *velocity *= factors[fluid.component_of_triangle(triangle)];
-    velocity.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(slow);
-    speeds
 }

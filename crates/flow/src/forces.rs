@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::advection::Dye;
+use crate::dye::Dye;
 use crate::fluid::Fluid;
 use crate::hinges::{WALL, last};
 use crate::sums::CHUNK;

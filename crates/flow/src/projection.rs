@@ -25,8 +25,6 @@ pub(crate) struct Pressure {
     equation: PoissonEquation,
     /// The weak divergence at each vertex.
     load: Vec<f64>,
-    /// Each triangle's terms in it.
-    terms: Vec<[f64; 3]>,
     pressure: Vec<f64>,
     /// All pressure of the last projection, whose gradient has the unit of a velocity.
     total: Vec<f64>,
@@ -37,7 +35,6 @@ impl Pressure {
         Self {
             equation,
             load: vec![0.0; vertex_count],
-            terms: Vec::new(),
             pressure: vec![0.0; vertex_count],
             total: vec![0.0; vertex_count],
         }
@@ -54,24 +51,36 @@ impl Pressure {
     }
 
     /// Takes the gradient part off a velocity if it is not without divergence already.
-    pub fn project_added(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2]) -> Result<(), FlowError> {
+    pub fn project_added(
+        &mut self,
+        fluid: &Fluid<'_>,
+        velocity: &mut [DVec2],
+        room: &mut Vec<f64>,
+    ) -> Result<(), FlowError> {
         let total = std::mem::replace(&mut self.total, vec![0.0; fluid.vertex_count()]);
         let fastest = fluid.speeds(velocity).into_iter().fold(0.0, f64::max);
-        let projected = self.project(fluid, velocity, fastest);
+        let projected = self.project(fluid, velocity, fastest, room);
         self.total = total;
         projected
     }
 
     /// Takes the gradient part off a velocity. The tolerance refers to `fastest`, its norm on the component with the
-    /// largest, or a little more, as given: if all of it is a gradient, only rounding is left.
-    pub fn project(&mut self, fluid: &Fluid<'_>, velocity: &mut [DVec2], fastest: f64) -> Result<(), FlowError> {
+    /// largest, or a little more, as given: if all of it is a gradient, only rounding is left. `room` is scratch memory.
+    pub fn project(
+        &mut self,
+        fluid: &Fluid<'_>,
+        velocity: &mut [DVec2],
+        fastest: f64,
+        room: &mut Vec<f64>,
+    ) -> Result<(), FlowError> {
         let enough = ENOUGH * fastest / fluid.mean_edge;
         self.total.fill(0.0);
-        self.terms.resize(fluid.triangle_count(), [0.0; 3]);
-        let terms = self.terms.par_iter_mut().with_min_len(CHUNK).enumerate();
-        terms.for_each(|(triangle, terms)| *terms = corner_terms(fluid, triangle, velocity[triangle]));
+        room.resize(room.len().max(3 * fluid.triangle_count()), 0.0);
+        let (terms, _) = room[..3 * fluid.triangle_count()].as_chunks_mut();
+        let each = terms.par_iter_mut().with_min_len(CHUNK).enumerate();
+        each.for_each(|(triangle, terms)| *terms = corner_terms(fluid, triangle, velocity[triangle]));
         for _ in 0..MOST {
-            sum_terms(fluid, &self.terms, &mut self.load);
+            sum_terms(fluid, terms, &mut self.load);
             if norm(fluid, &self.load) <= enough {
                 break;
             }
@@ -87,7 +96,7 @@ impl Pressure {
                 *velocity -= fluid.domain.charts[triangle].gradient(values);
                 *terms = corner_terms(fluid, triangle, *velocity);
             };
-            let pairs = velocity.par_iter_mut().zip(&mut self.terms).with_min_len(CHUNK);
+            let pairs = velocity.par_iter_mut().zip(&mut *terms).with_min_len(CHUNK);
             pairs.enumerate().for_each(subtract);
         }
         Ok(())

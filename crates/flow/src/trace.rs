@@ -10,27 +10,15 @@
 
 use glam::DVec2;
 
-use crate::corners::along_ray;
 use crate::domain::{Domain, MOST_EDGES, Place};
 use crate::hinges::WALL;
-use crate::lanes::{LANES, Lanes, Vectors, change, put, turn, vector};
-use crate::plane::{self, conjugate, turned, turned_back};
+use crate::lanes::{LANES, Lanes, Vectors, change, put, vector};
+use crate::plane::{turned, turned_back};
 use crate::slide::OnBorder;
+use crate::starts::Starts;
 
 const NEXT: [usize; 3] = [1, 2, 0];
 const LAST: [usize; 3] = [2, 0, 1];
-
-/// The beginnings of ways.
-struct Starts {
-    /// The corners of the triangles that they enter; [`WALL`] at bare vertices.
-    corners: [u32; LANES],
-    /// The ways in the planes of the triangles.
-    ways: Vectors,
-    /// The changes of the coordinates of the ways' own corners, the next and the last ones.
-    rates: [Lanes; 3],
-    /// From the tangent planes of the vertices to the triangles' planes.
-    rotations: Vectors,
-}
 
 /// The ends of ways.
 pub(crate) struct Ends {
@@ -48,6 +36,12 @@ impl Ends {
             weights: [[0.0; LANES]; 3],
             rotations: [[1.0; LANES], [0.0; LANES]],
         }
+    }
+
+    /// Whether a way began at a bare vertex, and has no end.
+    #[inline(always)]
+    pub fn is_bare(&self, i: usize) -> bool {
+        self.weights.iter().all(|weights| weights[i] == 0.0)
     }
 }
 
@@ -74,13 +68,7 @@ impl Domain {
     /// planes of these vertices. Further displacements must be numbers.
     #[inline(always)]
     pub fn trace(&self, first: usize, count: usize, displacements: &Vectors, ends: &mut Ends) {
-        let mut starts = Starts {
-            corners: [WALL; LANES],
-            ways: *displacements,
-            rates: [[0.0; LANES]; 3],
-            rotations: [[1.0; LANES], [0.0; LANES]],
-        };
-        self.start(first, count, &mut starts);
+        let starts = Starts::of(self, first, count, displacements);
         let mut arrived: [Lanes; 3] = [[0.0; LANES]; 3];
         let mut there: Vectors = starts.ways;
         // Ways that slid along a border are finished already.
@@ -132,75 +120,6 @@ impl Domain {
             }
             put(&mut ends.rotations, i, place.rotation);
         }
-    }
-
-    /// Begins ways along the displacements that `starts.ways` has.
-    #[inline(always)]
-    fn start(&self, first: usize, count: usize, starts: &mut Starts) {
-        let Starts {
-            corners,
-            ways,
-            rates,
-            rotations,
-        } = starts;
-        let mut angles = [0.0; LANES];
-        for (i, angle) in angles.iter_mut().enumerate() {
-            *angle = plane::angle(vector(ways, i));
-        }
-        // By how much the direction in the triangle is turned more than the middle of its corner.
-        let (mut turns, mut twists) = ([0.0; LANES], [0.0; LANES]);
-        let mut layouts = [[1.0; LANES], [0.0; LANES], [1.0; LANES]];
-        let (mut others, mut other_count) = ([None; LANES], 0);
-        for i in 0..count {
-            let vertex = first + i;
-            let Some(wedge) = self.fans.wedge(vertex, angles[i]) else {
-                continue;
-            };
-            corners[i] = wedge.corner;
-            turns[i] = (angles[i] - wedge.middle) * self.fans.bend(vertex);
-            if wedge.is_last_of_open || vector(ways, i) == DVec2::ZERO {
-                let way = self
-                    .fans
-                    .way_at_border(vertex, vector(ways, i), angles[i], &self.charts);
-                corners[i] = way.corner;
-                others[other_count] = Some((i, way.direction));
-                other_count += 1;
-            }
-        }
-        for (i, &corner) in corners.iter().enumerate().take(count) {
-            if corner != WALL {
-                put(rotations, i, self.fans.rotation(corner));
-                twists[i] = self.fans.twist(corner);
-                let layout = self.charts[corner as usize / 3].layout();
-                (layouts[0][i], layouts[1][i], layouts[2][i]) = (layout[0], layout[1], layout[2]);
-            }
-        }
-        change(ways, |i, way| turned_back(vector(rotations, i), way));
-        turn(ways, &turns);
-        for (i, way) in others.into_iter().take(other_count).flatten() {
-            put(ways, i, way);
-        }
-        for i in 0..LANES {
-            // The chart's rates.
-            let of_2 = ways[1][i] / layouts[2][i];
-            let of_1 = (ways[0][i] - layouts[1][i] * of_2) / layouts[0][i];
-            let of_0 = -of_1 - of_2;
-            let k = corners[i] % 3;
-            let pick = |a: f64, b: f64, c: f64| {
-                if k == 0 {
-                    a
-                } else if k == 1 {
-                    b
-                } else {
-                    c
-                }
-            };
-            let [after, before] = [pick(of_1, of_2, of_0), pick(of_2, of_0, of_1)];
-            (rates[0][i], rates[1][i], rates[2][i]) = (pick(of_0, of_1, of_2), after, before);
-        }
-        let [after, before] = [rates[1], rates[2]].map(|rates| rates.map(|rate| if rate > 0.0 { rate } else { 0.0 }));
-        turn(rotations, &along_ray([&after, &before], &twists));
-        change(rotations, |_, rotation| conjugate(rotation));
     }
 
     /// Walks to the end of a way that begins at a corner.

@@ -100,3 +100,18 @@ fn a_push_sets_the_tangential_velocity_and_a_wash_takes_dye_away() {
     steps(&mut flow, 5);
     assert!((flow.dye_integral()[3] / poured - 1.0).abs() < 0.01);
 }
+
+#[test]
+fn a_bare_point_keeps_its_dye() {
+    let mut drawn = shapes::icosphere(2);
+    drawn.positions.push(DVec3::new(5.0, 0.0, 0.0));
+    let model = Arc::new(shapes::model(drawn));
+    let bare = model.surface.positions.iter().position(|p| p.x > 4.0).unwrap();
+    let mut flow = bound(&model, None);
+    stir(&mut flow, &model);
+    let before = flow.dyes();
+    steps(&mut flow, 5);
+    let after = flow.dyes();
+    assert!(before[bare][3] == 1.0 && after[bare] == before[bare]);
+    assert_ne!(after, before, "the rest flows");
+}
