@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use glam::DVec3;
 
 /// Dye at a vertex: linear red, green and blue multiplied by the coverage, and the coverage, each from 0 to 1. f32 has
-/// more digits than any picture, and history keeps many.
+/// more digits than any picture.
 pub type Dye = [f32; 4];
 
 /// A fluid between two stretches of its flow. It is shared by clones, and a missing field is zero everywhere.
@@ -40,15 +40,6 @@ impl FlowOptions {
 }
 
 impl Fluid {
-    /// The memory of its fields. Each holder of a field counts its share of it.
-    pub(super) fn bytes(&self) -> usize {
-        fn of<T>(field: &Option<Arc<Vec<T>>>) -> usize {
-            let share = |field: &Arc<Vec<T>>| size_of_val(field.as_slice()) / Arc::strong_count(field);
-            field.as_ref().map_or(0, share)
-        }
-        of(&self.dye) + of(&self.velocity) + of(&self.kept)
-    }
-
     /// Returns true if there is dye that flows.
     pub fn has_dye(&self) -> bool {
         self.dye

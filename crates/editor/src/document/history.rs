@@ -17,9 +17,10 @@ use pliant_mesh::Model;
 use super::access::Access;
 use super::animation::Animation;
 use super::content::{Content, Paint, Tips, WorkPose};
-use super::fluid::{FlowOptions, Fluid};
+use super::fluid::FlowOptions;
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
+use super::packed_fluid::PackedFluid;
 use super::pose::{Placed, Pose};
 use super::saved::{SaveMark, Saved, SavedAs};
 use super::sparse::Sparse;
@@ -66,7 +67,7 @@ pub(crate) enum Change {
     /// The state to which a work pose returns.
     WorkPose(Option<Arc<WorkPose>>),
     /// The fluid on the surface.
-    Fluid(Fluid),
+    Fluid(PackedFluid),
     /// The forces in its flow.
     FlowOptions(FlowOptions),
     /// Another mesh, with the whole document on it. It is alone in its step, which has no shape of its own.
@@ -426,7 +427,11 @@ fn swap(change: &mut Change, document: &mut Document, strength: &mut Option<Arc<
         Change::Poses(poses) => document.swap_poses(poses),
         Change::Animation(animation) => document.swap_animation(animation),
         Change::WorkPose(work) => document.swap_work_pose(work),
-        Change::Fluid(fluid) => document.swap_fluid(fluid),
+        Change::Fluid(packed) => {
+            let mut fluid = packed.unpacked();
+            document.swap_fluid(&mut fluid);
+            *packed = PackedFluid::of(&fluid);
+        }
         Change::FlowOptions(options) => document.swap_flow_options(options),
         Change::Strength(other) => std::mem::swap(other, strength),
         Change::Mesh(other) => document.swap_content(&mut other.content),

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::content::Paint;
 use super::history::{Change, History};
+use super::packed_fluid::PackedFluid;
 use super::sparse::Sparse;
 use super::state::Document;
 use super::version::Aspect;
@@ -135,7 +136,7 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
         changes.push(Change::WorkPose(before.work_pose.clone()));
     }
     if differ(Aspect::Fluid) && before.fluid != after.fluid {
-        changes.push(Change::Fluid(before.fluid.clone()));
+        changes.push(Change::Fluid(PackedFluid::of(&before.fluid)));
     }
     if before.flow_options != after.flow_options {
         changes.push(Change::FlowOptions(before.flow_options));

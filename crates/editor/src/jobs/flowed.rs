@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::allowance::Allowance;
 use super::slot::{Unfinished, Work};
-use crate::document::{Dye, FlowOptions, Fluid, dye_colour, over};
+use crate::document::{Dye, FlowOptions, Fluid, dye_colour, over, round_velocities, rounded_dye};
 
 /// The length of a step, in seconds: a picture of a common screen.
 pub(crate) const FLOW_STEP: f64 = 1.0 / 60.0;
@@ -149,15 +149,18 @@ fn pour(flow: &mut Flow<'_>, splash: &Splash, vertex_count: usize) {
     }
 }
 
-/// The state of a flow with these dyes.
-fn state(flow: &Flow<'_>, dyes: Vec<Dye>) -> Fluid {
+/// The state of a flow with these dyes, rounded as history keeps it.
+fn state(flow: &Flow<'_>, mut dyes: Vec<Dye>) -> Fluid {
+    dyes.par_iter_mut().for_each(|dye| *dye = rounded_dye(*dye));
     let is_dyed = dyes.iter().any(|[.., coverage]| *coverage > 0.0);
     let velocities = flow.velocities();
     let moves = velocities.iter().any(|velocity| *velocity != DVec3::ZERO);
     let velocities = velocities.into_par_iter().map(|velocity| velocity.as_vec3().to_array());
+    let mut velocities: Vec<[f32; 3]> = velocities.collect();
+    round_velocities(&mut velocities);
     Fluid {
         dye: is_dyed.then(|| Arc::new(dyes)),
-        velocity: moves.then(|| Arc::new(velocities.collect())),
+        velocity: moves.then(|| Arc::new(velocities)),
         kept: None,
     }
 }

@@ -6,6 +6,7 @@ use pliant_mesh::SurfaceVertex;
 
 use super::{Document, Repainted};
 use crate::document::fluid::{Dye, FlowOptions, Fluid};
+use crate::document::packed_fluid::rounded_dye;
 use crate::document::version::Aspect;
 
 impl Document {
@@ -31,12 +32,17 @@ impl Document {
         }
     }
 
-    /// Changes the dye of some vertices, those that `change` returns.
+    /// Changes the dye of some vertices, those that `change` returns, and rounds it as history keeps it.
     pub(crate) fn change_dye(&mut self, change: impl FnOnce(&mut [Dye]) -> Vec<SurfaceVertex>) {
         let count = self.content.paint.len();
         let dye = &mut self.content.fluid.dye;
         let dye = dye.get_or_insert_with(|| Arc::new(vec![[0.0; 4]; count]));
-        let changed = change(Arc::make_mut(dye).as_mut_slice());
+        let dye = Arc::make_mut(dye);
+        let changed = change(dye.as_mut_slice());
+        for vertex in &changed {
+            let dye = &mut dye[vertex.index()];
+            *dye = rounded_dye(*dye);
+        }
         self.marks.mark(&[Aspect::Fluid]);
         self.repainted.note(changed.into_iter(), count);
     }
