@@ -157,7 +157,8 @@ impl DeformMethod for Lattice {
         let samples = samples(input, &within, soft_unit(&grid, self.norm), SAMPLES);
         let affine = AffineParts::fitted(&samples, input.handles, within.middle(), within.diagonal);
         input.progress.set(0.1);
-        let controls = fitted(&grid, self.norm, &samples, input.handles, &affine, input.cancel)?;
+        let handles = (input.handles, &*input.partition.soft);
+        let controls = fitted(&grid, self.norm, &samples, handles, &affine, input.cancel)?;
         input.progress.set(0.5);
         let vertices = moving(HandleFit::LeastSquares, input);
         let falloff = Falloff::of(input.problem, &vertices, self.falloff * within.diagonal);
