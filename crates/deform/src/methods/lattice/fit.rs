@@ -4,8 +4,8 @@
 //! The smaller λ is, the more closely the handles are met, but by swings of the control points that tear at everything
 //! between and beyond the handles. So λ is the smallest one with which no point swings far.
 
-use faer::{Mat, Scale};
-use glam::USizeVec3;
+use faer::Mat;
+use glam::{DVec3, USizeVec3};
 use pliant_mesh::Cancel;
 
 use super::LatticeNorm;
@@ -20,7 +20,7 @@ use crate::space::fit_samples::Sample;
 /// more than the largest one a handle is missed so far that it hardly leads.
 const REGULARISATIONS: [f64; 6] = [1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
 
-/// A control point moves at most so many times as far as it would with its handle's own motion. On the necks of a horse
+/// A control point moves at most so many times as far as the handles in a motion that they share. On the necks of a horse
 /// and an armadillo, moved by a patch below a free head, the head keeps its shape up to 2.5 and is torn at 2.8.
 const SWING: f64 = 2.5;
 
@@ -72,8 +72,11 @@ impl Equations {
 
     /// The solution of these equations and λ times the others.
     fn solved_with(&self, other: &Self, regularisation: f64) -> Mat<f64> {
-        let scale = Scale(regularisation);
-        solved(&self.matrix + scale * &other.matrix, &self.right + scale * &other.right)
+        let sum = |own: &Mat<f64>, other: &Mat<f64>| {
+            let entry = |row, column| own[(row, column)] + regularisation * other[(row, column)];
+            Mat::from_fn(own.nrows(), own.ncols(), entry)
+        };
+        solved(sum(&self.matrix, &other.matrix), sum(&self.right, &other.right))
     }
 }
 
@@ -143,19 +146,26 @@ pub(super) fn fitted(
     Ok(controls)
 }
 
-/// The largest way of a control point: for a shift of its handle as a multiple of the shift; for a turn or a stretch as a
-/// multiple of the point's way with the handle's own motion, or at least of that of the handle's vertices.
+/// The largest way of a control point in a motion that all handles share: for a shift as a multiple of the shift; for a turn
+/// or a stretch about their middle as a multiple of the point's own way in it, or at least of that of the handles.
+///
+/// Handles may also move against each other, as the sections of a curve do. Each of them alone then swings its
+/// neighbours' points by far, and all together do not.
 fn swing(grid: &Grid, handles: &[Handle], controls: &[[f64; 4]]) -> f64 {
+    let count = handles.len().max(1);
+    let middle = handles.iter().map(|handle| handle.world_centre).sum::<DVec3>() / count as f64;
+    let reach = |handle: &Handle| handle.world_centre.distance(middle) + handle.radius;
+    let radius = handles.iter().map(reach).fold(f64::MIN_POSITIVE, f64::max);
     let mut largest = 0.0_f64;
-    for (place, ways) in grid.places().zip(controls.chunks_exact(handles.len().max(1))) {
-        let rest = grid.rest(place);
-        for (handle, [linear @ .., shift]) in handles.iter().zip(ways) {
-            let [own @ .., _] = handle.coordinates(rest);
-            let own = own.into_iter().fold(1.0, |most: f64, value| most.max(value.abs()));
-            largest = linear
-                .iter()
-                .fold(largest.max(shift.abs()), |largest, way| largest.max(way.abs() / own));
+    for (place, ways) in grid.places().zip(controls.chunks_exact(count)) {
+        let own = ((grid.rest(place) - middle) / radius).abs().max_element().max(1.0);
+        let (mut linear, mut shift) = (DVec3::ZERO, 0.0);
+        for (handle, way) in handles.iter().zip(ways) {
+            let from_middle = (handle.world_centre - middle) / radius;
+            linear += DVec3::new(way[0], way[1], way[2]) * (handle.radius / radius) + from_middle * way[3];
+            shift += way[3];
         }
+        largest = largest.max(shift.abs()).max(linear.abs().max_element() / own);
     }
     largest
 }
