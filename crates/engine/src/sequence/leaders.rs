@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::bent::Bent;
 
-/// The number of frames that one leads. Of 120 frames of a walking horse, bent by 40°, the frames beside a leader took
-/// 45% of the steps that they take from rest, up to eight frames away.
+/// The number of frames that one leads. On a walking horse whose head is turned by 40°, ten frames up to eight frames from a
+/// leader took 55% of the steps that they take from rest.
 const BLOCK: usize = 8;
 
 /// The bent leaders of some blocks.
