@@ -4,6 +4,7 @@
 //! on a part from which a way leads to the arm only far around. The stroke follows the part with most of its places; as
 //! if the other parts were transparent, the rest of them go on to the surface behind these, as far as that is connected.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use pliant_mesh::SurfaceVertex;
@@ -75,7 +76,7 @@ fn of_largest_part(runs: &[Range<usize>], places: &[Place], picking: &Picking<'_
     for (run, part) in runs.iter().zip(&part_of) {
         counts[*part] += run.len();
     }
-    // Of equal ones the last: strokes go from the body to the tip.
+    // The last one wins a tie, because a stroke goes from the body to the tip.
     let largest = (0..counts.len()).max_by_key(|&part| counts[part]);
     let of_part = runs.iter().zip(&part_of);
     of_part
@@ -127,9 +128,10 @@ fn are_beside(one: &Pick, other: &Pick, picking: &Picking<'_>) -> bool {
     let is_inside = |vertex: SurfaceVertex| picking.position(vertex).distance(middle) <= BALL * apart;
     let ends = corners(other);
     let mut front = corners(one).to_vec();
-    let mut is_passed = vec![false; picking.model.surface.positions.len()];
+    // Few vertices of a large surface are in the ball.
+    let mut passed = BTreeSet::new();
     while let Some(vertex) = front.pop() {
-        if std::mem::replace(&mut is_passed[vertex.index()], true) {
+        if !passed.insert(vertex) {
             continue;
         }
         if ends.contains(&vertex) {
