@@ -103,9 +103,9 @@ pub use former::Former;
 pub use ground_axis::GroundAxis;
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, Flowed, InlineExecutor,
-    Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome, JobQueue, JobResult,
-    PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
+    Alternative, BothSides, Compared, Comparison, ControlPlaces, Descent, Executor, Figures, FlowRecording, Flowed,
+    InlineExecutor, Inspectable, Inspected, IntersectionPlace, Intersections, Job, JobDone, JobKind, JobOutcome,
+    JobQueue, JobResult, PresentBinding, Running, Skin, Skinned, SolveResult, Solved, Symmetry, Unfinished,
 };
 pub use key_space::KeySpace;
 pub use lines::Lines;

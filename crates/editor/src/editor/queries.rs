@@ -9,9 +9,9 @@ use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
 use crate::command::{Command, Shortcut, State};
-use crate::document::{Crease, Document, HandleId, History, SaveMark};
+use crate::document::{Aspect, Crease, Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
-use crate::jobs::{Activity, Comparison, Intersections, JobKind};
+use crate::jobs::{Activity, Comparison, FlowRecording, Intersections, JobKind};
 use crate::region::Rim;
 use crate::revision::Revision;
 use crate::scene_view::{ControlPoints, SceneView};
@@ -391,6 +391,14 @@ impl Editor {
             view: &self.view,
             settings: &self.settings,
         })
+    }
+
+    /// The flow that was played and led to the document's fluid; `None` if another change came last.
+    pub fn flow_recording(&self) -> Option<&FlowRecording> {
+        let workspace = &self.workspace;
+        workspace
+            .flow
+            .recording(workspace.document.versions().of(Aspect::Fluid))
     }
 
     /// Returns true if a gesture is active that Esc ends: a stroke, a drag, picking a pivot.

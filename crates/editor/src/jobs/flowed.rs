@@ -3,36 +3,14 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_flow::{Advection, Flow, FlowError, FlowSettings};
+use pliant_flow::{Flow, FlowError};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::allowance::Allowance;
+use super::flow_moment::{FlowMoment, begin_at};
 use super::slot::{Unfinished, Work};
-use crate::document::{Dye, FlowOptions, Fluid, dye_colour, over, round_velocities, rounded_dye};
-
-/// The length of a step, in seconds: a picture of a common screen.
-pub(crate) const FLOW_STEP: f64 = 1.0 / 60.0;
-
-/// The fluid that a brush puts in place of the one under it.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Poured {
-    /// Dye of this colour: linear red, green and blue.
-    Dye([f64; 3]),
-    /// Clear fluid.
-    Clear,
-}
-
-/// The effect of a brush on a flow.
-#[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Splash {
-    /// The vertices under the brush, each with its share from 0 to 1.
-    pub(crate) vertices: Vec<(SurfaceVertex, f64)>,
-    /// The fluid that is poured, if any.
-    pub(crate) poured: Option<Poured>,
-    /// The velocity that the brush gives the fluid.
-    pub(crate) velocity: Option<DVec3>,
-}
+use crate::document::{Dye, Fluid, dye_colour, over, round_velocities, rounded_dye};
 
 /// The input of a step.
 pub(crate) struct FlowRequest {
@@ -45,9 +23,7 @@ pub(crate) struct FlowRequest {
     pub(crate) start: Option<Fluid>,
     /// The kept dye, which is shown under the other.
     pub(crate) kept: Option<Arc<Vec<Dye>>>,
-    pub(crate) splashes: Vec<Splash>,
-    pub(crate) options: FlowOptions,
-    pub(crate) steps: usize,
+    pub(crate) moment: FlowMoment,
     /// True if the state is wanted, and not only its colours.
     pub(crate) is_last: bool,
 }
@@ -94,18 +70,10 @@ fn flowed(
     if let Some(start) = &request.start {
         begin_at(&mut flow, start);
     }
-    for splash in &request.splashes {
-        pour(&mut flow, splash, request.model.surface.positions.len());
-    }
-    let settings = FlowSettings {
-        gravity: request.options.gravity,
-        viscosity: request.options.viscosity,
-        confinement: request.options.confinement,
-        advection: Advection::SecondOrder,
-    };
-    for _ in 0..request.steps {
-        flow.step(FLOW_STEP, &settings, cancel)?;
-    }
+    let vertex_count = request.model.surface.positions.len();
+    request
+        .moment
+        .play(&mut flow, vertex_count, cancel, |_| Ok::<(), FlowError>(()))?;
     let dyes: Vec<Dye> = flow
         .dyes()
         .into_par_iter()
@@ -121,32 +89,6 @@ fn flowed(
         fluid: request.is_last.then(|| state(&flow, dyes)),
         flow,
     })
-}
-
-/// Takes a flow to a state.
-fn begin_at(flow: &mut Flow<'_>, start: &Fluid) {
-    let velocity = |triangle: usize| {
-        let velocity = start.velocity.as_ref().map_or([0.0; 3], |field| field[triangle]);
-        DVec3::from_array(velocity.map(f64::from))
-    };
-    let dye = |vertex: usize| start.dye.as_ref().map_or([0.0; 4], |dye| dye[vertex]).map(f64::from);
-    flow.set_state(velocity, dye);
-}
-
-fn pour(flow: &mut Flow<'_>, splash: &Splash, vertex_count: usize) {
-    let mut shares = vec![0.0; vertex_count];
-    splash
-        .vertices
-        .iter()
-        .for_each(|(vertex, share)| shares[vertex.index()] = *share);
-    match splash.poured {
-        Some(Poured::Dye(colour)) => flow.pour(&shares, colour),
-        Some(Poured::Clear) => flow.clear(&shares),
-        None => {}
-    }
-    if let Some(velocity) = splash.velocity {
-        flow.push(&shares, velocity);
-    }
 }
 
 /// The state of a flow with these dyes, rounded as history keeps it.

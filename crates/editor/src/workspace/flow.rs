@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use super::flow_play::{Bound, Phase};
+use super::flow_play::{Bound, Phase, Recorded};
 use super::state::Workspace;
 use crate::document::{Aspect, FlowOptions, Fluid};
-use crate::jobs::{FlowRequest, JobKind, Splash};
+use crate::jobs::{FlowMoment, FlowRecording, FlowRequest, JobKind, Splash};
 
 /// The person's actions.
 impl Workspace {
@@ -117,24 +117,37 @@ impl Workspace {
         };
         // During a stretch the fluid stays on the shape of its beginning.
         let bound = self.flow.bound.take().filter(|bound| !is_first || bound.on == on);
-        let is_there = bound.as_ref().is_some_and(|bound| !is_first || bound.at == Some(at));
+        let goes_on = self.flow.recorded.as_ref().is_some_and(|recorded| recorded.at == at);
+        // A recording begins with the document's fluid, which is rounded, and so must the flow.
+        let is_there = bound
+            .as_ref()
+            .is_some_and(|bound| !is_first || (goes_on && bound.at == Some(at)));
         if let Some(bound) = &bound {
             on = bound.on;
         }
-        let displacements = self.document.from_file();
         let is_bent = self.document.is_displaced() || self.document.is_applied();
+        let displacements = is_bent.then(|| Arc::clone(self.document.from_file()));
         let fluid = self.document.fluid();
+        let moment = FlowMoment {
+            splashes: std::mem::take(&mut self.flow.splashes).into(),
+            options: *self.document.flow_options(),
+            steps,
+        };
+        let begun = (is_first && !is_there).then(|| Recorded {
+            recording: FlowRecording::new(Arc::clone(&model), displacements.clone(), fluid),
+            ended: 0,
+            at,
+        });
         let request = FlowRequest {
             model,
-            displacements: is_bent.then(|| Arc::clone(displacements)),
+            displacements,
             start: (!is_there).then(|| fluid.clone()),
             kept: fluid.kept.clone(),
             flow: bound.map(|bound| bound.flow),
-            splashes: std::mem::take(&mut self.flow.splashes),
-            options: *self.document.flow_options(),
-            steps,
+            moment: moment.clone(),
             is_last,
         };
+        self.flow.record(begun, moment);
         self.flow.lent = Some((on, self.flow.stretches));
         match &mut self.flow.phase {
             Phase::Playing { is_first } | Phase::Ending { is_first, .. } => *is_first = false,
@@ -173,10 +186,17 @@ impl Workspace {
     /// Makes a stretch of play a step of the history.
     fn end_stretch(&mut self, fluid: Fluid) {
         let kept = self.document.fluid().kept.clone();
+        if let Some(recorded) = &mut self.flow.recorded {
+            recorded.ended = recorded.recording.len();
+        }
         self.flow.drop_stretch();
         self.change("Flow", |document| document.set_fluid(Fluid { kept, ..fluid }));
+        let at = self.document.versions().of(Aspect::Fluid);
         if let Some(bound) = &mut self.flow.bound {
-            bound.at = Some(self.document.versions().of(Aspect::Fluid));
+            bound.at = Some(at);
+        }
+        if let Some(recorded) = &mut self.flow.recorded {
+            recorded.at = at;
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pliant_flow::Flow;
 
 use crate::document::{Fluid, Version};
-use crate::jobs::Splash;
+use crate::jobs::{FlowMoment, FlowRecording, Splash};
 use crate::revision::Revision;
 
 /// The flow between the document and its jobs.
@@ -24,6 +24,17 @@ pub(crate) struct FlowPlay {
     pub(super) splashes: Vec<Splash>,
     /// Grows when the colours changed.
     pub(super) revision: u64,
+    /// The stretches that followed each other, as long as nothing else changed the fluid.
+    pub(super) recorded: Option<Recorded>,
+}
+
+/// A recording, and the part of it that led to the document's fluid.
+pub(super) struct Recorded {
+    pub(super) recording: FlowRecording,
+    /// The number of moments up to the last end of a stretch.
+    pub(super) ended: usize,
+    /// The document's fluid at that end.
+    pub(super) at: Version,
 }
 
 /// A flow that is ready for a step.
@@ -71,8 +82,27 @@ impl FlowPlay {
         self.revision
     }
 
+    /// The recording of the flow that led to this fluid of the document.
+    pub(crate) fn recording(&self, at: Version) -> Option<&FlowRecording> {
+        let recorded = self.recorded.as_ref()?;
+        let is_whole = recorded.ended > 0 && recorded.ended == recorded.recording.len();
+        (recorded.at == at && is_whole).then_some(&recorded.recording)
+    }
+
+    /// Records a moment, in the recording that begins with it or in the present one.
+    pub(super) fn record(&mut self, begun: Option<Recorded>, moment: FlowMoment) {
+        self.recorded = begun.or(self.recorded.take());
+        let has_room = self.recorded.as_mut().map(|recorded| recorded.recording.push(moment));
+        if has_room == Some(false) {
+            self.recorded = None;
+        }
+    }
+
     /// Ends a stretch without a trace.
     pub(super) fn drop_stretch(&mut self) {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.recording.truncate(recorded.ended);
+        }
         self.phase = Phase::Still;
         self.stretches += 1;
         self.splashes.clear();
@@ -84,6 +114,6 @@ impl FlowPlay {
     /// Another file: nothing flows there yet.
     pub(super) fn reset(&mut self) {
         self.drop_stretch();
-        (self.bound, self.lent) = (None, None);
+        (self.bound, self.lent, self.recorded) = (None, None, None);
     }
 }

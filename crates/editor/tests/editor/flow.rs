@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use crate::rig::{CENTRE_PX, Rig};
 use glam::{DVec2, DVec3};
+use pliant_deform::Budget;
 use pliant_editor::{
-    Beginning, Command, Event, FlowAction, FlowBrush, FlowOptions, Fluid, JobKind, Key, MeshReference, Project,
+    Beginning, Command, Dye, Event, FlowAction, FlowBrush, FlowOptions, Fluid, JobKind, Key, MeshReference, Project,
     ToolMode, geometry_hash,
 };
-use pliant_mesh::shapes;
+use pliant_flow::FlowError;
+use pliant_mesh::{Cancel, Progress, shapes};
 
 const SPACE: Key = Key::Character(' ');
 
@@ -156,6 +158,95 @@ fn the_same_play_gives_the_same_bits_and_goes_on_after_a_pause() {
         rig.drain();
     }
     assert_eq!(fluid(&rig), play(), "single steps go on where the last one ended");
+}
+
+/// The dyes of every step of the recording, from its start.
+fn replayed(rig: &Rig) -> Vec<Vec<Dye>> {
+    let recording = rig.editor.flow_recording().unwrap();
+    let mut frames = Vec::new();
+    let each = |step: usize, dyes: &[Dye]| {
+        assert_eq!(step, frames.len());
+        frames.push(dyes.to_vec());
+        Ok::<(), FlowError>(())
+    };
+    let (progress, cancel) = (Progress::new(), Cancel::new());
+    recording.replay(Budget::default(), (&progress, &cancel), each).unwrap();
+    assert_eq!(frames.len(), recording.steps() + 1);
+    frames
+}
+
+/// Dye as the document has it.
+fn rounded(dyes: &[Dye]) -> Vec<Dye> {
+    let round = |value: f32| (value * 65535.0).round() / 65535.0;
+    dyes.iter().map(|dye| dye.map(round)).collect()
+}
+
+#[test]
+fn a_recording_gives_the_bits_of_what_was_played_under_brushes_and_changing_forces() {
+    let mut rig = sphere();
+    pour(&mut rig, &to_the_right());
+    let start = fluid(&rig).dye.unwrap();
+    assert!(rig.editor.flow_recording().is_none(), "nothing was played");
+    rig.key(SPACE);
+    steps(&mut rig, 3);
+    rig.press(CENTRE_PX);
+    steps(&mut rig, 2);
+    rig.release(CENTRE_PX);
+    rig.command(Command::SetFlowOptions(FlowOptions {
+        gravity: DVec3::new(0.0, -9.81, 0.0),
+        confinement: 1.0,
+        viscosity: 0.001,
+    }));
+    steps(&mut rig, 3);
+    rig.key(SPACE);
+    rig.drain();
+    let first = fluid(&rig).dye.unwrap();
+    let frames = replayed(&rig);
+    assert_eq!(frames[0], *start);
+    assert_eq!(rounded(frames.last().unwrap()), *first);
+
+    // A pause and a single step go on; a stretch without a trace leaves none in it.
+    rig.command(Command::StepFlow);
+    rig.drain();
+    rig.key(SPACE);
+    steps(&mut rig, 2);
+    rig.command(Command::Undo);
+    rig.drain();
+    let longer = replayed(&rig);
+    assert_eq!(longer.len(), frames.len() + 1);
+    assert_eq!(longer[..frames.len()], frames);
+    assert_eq!(rounded(longer.last().unwrap()), *fluid(&rig).dye.unwrap());
+
+    // Another change of the fluid ends it, another change of the document does not.
+    rig.paint_handle();
+    assert!(rig.editor.flow_recording().is_some());
+    rig.command(Command::SetTool(ToolMode::Flow));
+    pour(&mut rig, &to_the_right()[..3]);
+    assert!(rig.editor.flow_recording().is_none());
+    rig.command(Command::StepFlow);
+    rig.drain();
+    assert_eq!(replayed(&rig).len(), 2);
+    assert_eq!(rounded(replayed(&rig).last().unwrap()), *fluid(&rig).dye.unwrap());
+    rig.command(Command::Undo);
+    assert!(rig.editor.flow_recording().is_none());
+}
+
+#[test]
+fn a_recording_has_the_dye_over_the_kept_one_on_the_shape_on_which_it_flowed() {
+    let mut rig = sphere();
+    pour(&mut rig, &to_the_right());
+    rig.command(Command::KeepDye);
+    rig.command(Command::SetTool(ToolMode::Flow));
+    pour(&mut rig, &to_the_right()[..4]);
+    rig.key(SPACE);
+    steps(&mut rig, 2);
+    rig.key(SPACE);
+    rig.drain();
+    let kept = fluid(&rig).kept.unwrap();
+    for dyes in replayed(&rig) {
+        let is_covered = dyes.iter().zip(kept.iter()).all(|(dye, kept)| dye[3] >= kept[3] - 1e-6);
+        assert!(is_covered, "kept dye was lost");
+    }
 }
 
 #[test]
