@@ -2,10 +2,54 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::EngineError;
+use crate::files::Destination;
 use crate::path_text::shown;
+
+/// The most frames of an animation: more than an hour at 24 frames a second.
+const MOST_FRAMES: f64 = 100_000.0;
+
+/// A time this many frames before a whole frame still counts as that frame.
+const ROUNDING: f64 = 1e-6;
 
 /// The place of `#`s in a name: before its extension, after this.
 const BEFORE: char = '-';
+
+/// The treatment of files with the names of an animation's numbered files.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum ExistingFrames {
+    /// They are kept, and the animation is refused.
+    #[default]
+    Keep,
+    /// They are replaced.
+    Replace,
+}
+
+impl ExistingFrames {
+    /// Those that may be replaced on request.
+    pub fn replaced(is_wanted: bool) -> Self {
+        if is_wanted { Self::Replace } else { Self::Keep }
+    }
+
+    /// Refuses names that are taken.
+    ///
+    /// # Errors
+    /// [`EngineError::FramesExist`].
+    pub(crate) fn check(self, frames: &Frames) -> Result<(), EngineError> {
+        let Frames::Each { .. } = frames else { return Ok(()) };
+        if self == Self::Replace {
+            return Ok(());
+        }
+        let mut taken = frames.all().filter(|place| place.exists());
+        match taken.next() {
+            Some(first) => Err(EngineError::FramesExist {
+                first,
+                count: 1 + taken.count(),
+            }),
+            None => Ok(()),
+        }
+    }
+}
 
 /// The files that are written.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -41,6 +85,20 @@ impl Frames {
             after: extension.map_or(String::new(), |extension| format!(".{extension}")),
             steps,
         }
+    }
+
+    /// A name with `-####` before its extension, unless `#`s for a number are there.
+    pub fn numbered(chosen: &Path) -> PathBuf {
+        let (Some(stem), Self::Last(..)) = (chosen.file_stem(), Self::of(chosen, 1)) else {
+            return chosen.to_owned();
+        };
+        let mut name = stem.to_owned();
+        name.push("-####");
+        if let Some(extension) = chosen.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        chosen.with_file_name(name)
     }
 
     /// The file to write after so many steps.
@@ -79,6 +137,32 @@ impl Frames {
         let (Self::Last(_, steps) | Self::Each { steps, .. }) = self;
         (0..=*steps).filter_map(|step| self.at(step))
     }
+}
+
+/// The number of frames up to a time, both ends included.
+///
+/// # Errors
+/// More frames than [`MOST_FRAMES`].
+pub(crate) fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
+    let last = (duration * fps + ROUNDING).floor();
+    if last >= MOST_FRAMES {
+        return Err(EngineError::Arguments(format!(
+            "--fps {fps} gives {last} frames, more than {MOST_FRAMES}: lower it, or shorten the animation"
+        )));
+    }
+    Ok(last as usize + 1)
+}
+
+/// The places of an animation's files.
+///
+/// # Errors
+/// A place where no file can be written.
+pub(crate) fn checked_places(output: &Path, count: usize) -> Result<Vec<PathBuf>, EngineError> {
+    let places: Vec<PathBuf> = Frames::of(output, count.saturating_sub(1)).all().collect();
+    for place in &places {
+        Destination::of(place)?;
+    }
+    Ok(places)
 }
 
 #[cfg(test)]

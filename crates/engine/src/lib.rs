@@ -75,8 +75,7 @@ mod transfer;
 pub mod watch;
 
 pub use animate::{
-    Animate, Animated, AnimationReport, ExistingFrames, MORPH_TOLERANCE, MorphReport, animate, animation_path,
-    stage_animation,
+    Animate, Animated, AnimationReport, MORPH_TOLERANCE, MorphReport, animate, animation_path, stage_animation,
 };
 pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, order, prepare, solved};
 pub use difference::{Compared, differences};
@@ -84,6 +83,7 @@ pub use edit::read_edit;
 pub use edit_job::EditJob;
 pub use error::EngineError;
 pub use flow::{FlowJob, FlowReport, Flowing, FromTo, flow, read_flow};
+pub use frames::ExistingFrames;
 pub use given::Given;
 pub use inspected::{Inspected, inspect};
 pub use loading::{Loaded, check_not_empty, is_project, load, load_bytes, open};

@@ -71,6 +71,8 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
     session.harness.run_steps(20);
     assert_eq!(session.harness.state().drawings(), drawings);
 
+    let folder = Folder::new();
+    let frames = exported(&mut session, folder.path());
     session.harness.state_mut().command(Command::KeepDye);
     session
         .harness
@@ -89,7 +91,6 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
     model.drawn_positions(&session.shape(), &mut bent);
     assert!(session.shape().iter().any(|d| d.length() > 0.1), "it is bent");
 
-    let folder = Folder::new();
     let own = open(&assets().join("creature.glb")).scene.appearance().colours;
     let own = own.unwrap_or_else(|| vec![[u16::MAX; 4]; bent.len()]);
     for name in ["flowed.glb"] {
@@ -120,8 +121,11 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
         }
         assert!(dyed > 10, "{name}: {dyed} dyed vertices at their bent places");
     }
-    // The same colours are in a morph target's file, and in that of the project by the command line.
+    // The last frame of the flow has the colours that were kept from it, and not those of the first.
     let flowed = colours(&folder.at("flowed.glb"));
+    assert!(apart(&flowed, &colours(frames.last().unwrap())) <= 1);
+    assert!(apart(&flowed, &colours(&frames[0])) > 2000);
+    // The same colours are in a morph target's file, and in that of the project by the command line.
     let (morph, project, applied) = (
         folder.at("morph.glb"),
         folder.at("flow.pliant"),
@@ -153,6 +157,40 @@ fn colour_is_poured_played_kept_and_saved_with_the_bent_shape() {
         said.contains("Saved") && said.contains("takes no new vertex colours"),
         "{said}"
     );
+}
+
+/// Exports the flow that was played as numbered files, without and with the question about files that are there.
+fn exported(session: &mut Session, folder: &Path) -> Vec<std::path::PathBuf> {
+    let recording = session.harness.state().editor().flow_recording().unwrap();
+    let (fps, seconds) = (
+        session.harness.state().editor().document().animation().fps(),
+        recording.seconds(),
+    );
+    let count = (fps * seconds + 1e-6).floor() as usize + 1;
+    let name = folder.join("played.glb");
+    session.harness.state_mut().export_flow(&name);
+    session.settle();
+    let frames: Vec<_> = (0..count).map(|k| folder.join(format!("played-{k:04}.glb"))).collect();
+    assert!(frames.iter().all(|frame| frame.exists()), "{count} frames");
+    assert!(!folder.join(format!("played-{count:04}.glb")).exists());
+    session.harness.state_mut().export_flow(&name);
+    session.settle();
+    click(session, "Replace");
+    session.settle();
+    let said = session.harness.state().headline().unwrap();
+    assert!(said.starts_with("Saved"), "{said}");
+    // A format without colours is refused in words.
+    session.harness.state_mut().export_flow(&folder.join("played.stl"));
+    session.settle();
+    let said = session.harness.state().headline().unwrap();
+    assert!(said.contains("colours") && !said.starts_with("Saved"), "{said}");
+    frames
+}
+
+/// The largest difference of two files' colours, in 65535ths.
+fn apart(some: &[[u16; 4]], others: &[[u16; 4]]) -> u16 {
+    let pairs = some.as_flattened().iter().zip(others.as_flattened());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap()
 }
 
 fn colours(path: &Path) -> Vec<[u16; 4]> {

@@ -49,16 +49,8 @@ fn has_time(format: Format) -> bool {
 /// The output for a name that a person has chosen: if its format has one shape in a file, `-####` comes before the
 /// extension, so that each frame gets a file. Other names stay.
 pub fn animation_path(chosen: &Path) -> PathBuf {
-    let (stem, extension) = (chosen.file_stem(), chosen.extension());
-    let format = Format::of_name(&chosen.to_string_lossy());
-    let is_numbered = matches!(Frames::of(chosen, 1), Frames::Each { .. });
-    match (stem, extension, format) {
-        (Some(stem), Some(extension), Ok(format)) if !has_time(format) && !is_numbered => {
-            let mut name = stem.to_owned();
-            name.push("-####.");
-            name.push(extension);
-            chosen.with_file_name(name)
-        }
+    match Format::of_name(&chosen.to_string_lossy()) {
+        Ok(format) if !has_time(format) => Frames::numbered(chosen),
         _ => chosen.to_owned(),
     }
 }

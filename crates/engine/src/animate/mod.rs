@@ -18,22 +18,16 @@ use self::kind::Kind;
 pub use self::kind::animation_path;
 pub(crate) use self::kind::check_output;
 pub use self::report::{AnimationReport, MorphReport};
-pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices, checked_places};
+pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices};
 use crate::EngineError;
 use crate::apply::{Prepared, check_bends, prepare};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::{NewFile, Staged, Staging};
 use crate::flow::with_dye;
-use crate::frames::Frames;
+use crate::frames::{ExistingFrames, Frames, checked_places, frame_count};
 use crate::loading::Loaded;
 use crate::report::{FrameTimes, ms_since};
 use crate::watch::Watch;
-
-/// The most frames of an animation: more than an hour at 24 frames a second.
-const MOST_FRAMES: f64 = 100_000.0;
-
-/// A time this many frames before a whole frame still counts as that frame.
-const ROUNDING: f64 = 1e-6;
 
 /// The [`Animate::tolerance`] of an animation that has no other.
 pub const MORPH_TOLERANCE: f64 = 1e-5;
@@ -53,42 +47,6 @@ pub struct Animate<'a> {
     pub fps: f64,
     /// Whether numbered files may replace others.
     pub frames: ExistingFrames,
-}
-
-/// The treatment of files with the names of an animation's numbered files.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum ExistingFrames {
-    /// They are kept, and the animation is refused.
-    #[default]
-    Keep,
-    /// They are replaced.
-    Replace,
-}
-
-impl ExistingFrames {
-    /// Those that may be replaced on request.
-    pub fn replaced(is_wanted: bool) -> Self {
-        if is_wanted { Self::Replace } else { Self::Keep }
-    }
-
-    /// Refuses names that are taken.
-    ///
-    /// # Errors
-    /// [`EngineError::FramesExist`].
-    pub(crate) fn check(self, frames: &Frames) -> Result<(), EngineError> {
-        let Frames::Each { .. } = frames else { return Ok(()) };
-        if self == Self::Replace {
-            return Ok(());
-        }
-        let mut taken = frames.all().filter(|place| place.exists());
-        match taken.next() {
-            Some(first) => Err(EngineError::FramesExist {
-                first,
-                count: 1 + taken.count(),
-            }),
-            None => Ok(()),
-        }
-    }
 }
 
 /// Solves every frame of an animation and writes it and the report, or nothing at all.
@@ -205,20 +163,6 @@ pub fn stage_animation(
         staged,
         report: run.finished(),
     })
-}
-
-/// The number of frames up to a time, both ends included.
-///
-/// # Errors
-/// More frames than [`MOST_FRAMES`].
-pub(crate) fn frame_count(duration: f64, fps: f64) -> Result<usize, EngineError> {
-    let last = (duration * fps + ROUNDING).floor();
-    if last >= MOST_FRAMES {
-        return Err(EngineError::Arguments(format!(
-            "--fps {fps} gives {last} frames, more than {MOST_FRAMES}: lower it, or shorten the animation"
-        )));
-    }
-    Ok(last as usize + 1)
 }
 
 /// Returns true if no frame moves anything.

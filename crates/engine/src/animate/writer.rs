@@ -1,7 +1,7 @@
 //! The writing of an animation, frame by frame: numbered files, a point cache, or morph targets of a glTF.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -292,16 +292,4 @@ impl AnimationFiles<'_> {
     fn bound(&self) -> f64 {
         self.tolerance * self.diagonal()
     }
-}
-
-/// The places of an animation's files.
-///
-/// # Errors
-/// A place where no file can be written.
-pub(crate) fn checked_places(output: &Path, count: usize) -> Result<Vec<PathBuf>, EngineError> {
-    let places: Vec<PathBuf> = Frames::of(output, count.saturating_sub(1)).all().collect();
-    for place in &places {
-        Destination::of(place)?;
-    }
-    Ok(places)
 }

@@ -96,7 +96,7 @@ fn begin(flow: &mut Flow<'_>, start: &FlowStart, model: &Model) {
 }
 
 /// The refusal of a flow, which names vertices by the file's numbers.
-fn refused(file: &Path, model: &Model, error: FlowError) -> EngineError {
+pub(super) fn refused(file: &Path, model: &Model, error: FlowError) -> EngineError {
     match error {
         FlowError::Cancelled(_) => EngineError::Interrupted,
         other => EngineError::Flow {

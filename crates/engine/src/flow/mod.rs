@@ -1,10 +1,12 @@
 //! Lets dye flow along a file's surface: a file in, the same file with other vertex colours out.
 
+mod coloured_files;
 mod colours;
 mod flowing;
-
+mod played;
 mod report;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 
@@ -14,16 +16,16 @@ use pliant_io::{Format, SaveError};
 use pliant_mesh::{Progress, WeldOptions};
 
 use crate::EngineError;
-use crate::files::{self, Destination, NewFile, Staged, Staging};
+use crate::files::{self, Destination, NewFile, Staging};
 use crate::frames::Frames;
-use crate::loading::{Loaded, check_not_empty, load};
+use crate::loading::{check_not_empty, load};
 use crate::report::{FrameTimes, ms_since};
-use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
-use colours::Colours;
+use coloured_files::ColouredFiles;
 
 pub use colours::{ColoursToSave, colour_hash, with_dye};
 pub use flowing::Flowing;
+pub use played::{PlayedFlow, StagedFlow, flow_frames_path, stage_played_flow};
 pub use report::{FlowReport, FromTo};
 
 /// The input of [`flow`].
@@ -81,24 +83,21 @@ pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowR
     let begun = Instant::now();
     let mut flow = Flowing::begin((job.file, &loaded.model), (job.flow, &start), job.budget, watch)?;
     let bind_ms = ms_since(begun);
+    let positions = loaded.model.rest_positions();
+    let beside = report_to.as_ref();
     let mut run = Run {
         job,
-        loaded: &loaded,
-        colours: Colours::of(&loaded),
-        beside: report_to.as_ref(),
-        staging,
+        files: ColouredFiles::new(&loaded, &positions, const { &BTreeSet::new() }, beside, staging),
         watch,
-        staged: None,
-        warnings: loaded.scene.notes().to_vec(),
-        save_ms: 0.0,
     };
     let mut report = FlowReport::at_start(&loaded, job.flow, flow.flow());
     (report.load_ms, report.bind_ms) = (load_ms, bind_ms);
     report.steps = run.all_steps(&mut flow, &frames)?;
     report.at_end(flow.flow());
-    report.save_ms = run.save_ms;
-    report.warnings = flow.warning().into_iter().chain(run.warnings).collect();
-    let mut staged = run.staged;
+    let files = run.files;
+    report.save_ms = files.save_ms;
+    report.warnings = flow.warning().into_iter().chain(files.warnings).collect();
+    let mut staged = files.staged;
     if let Some(to) = report_to {
         let text = report.to_json();
         let file = NewFile {
@@ -106,7 +105,7 @@ pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowR
             bytes: text.as_bytes(),
         };
         let written = staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?;
-        staged = Some(joined(staged, written));
+        staged = Some(coloured_files::joined(staged, written));
     }
     if watch.cancel.is_cancelled() {
         return Err(EngineError::Interrupted);
@@ -121,14 +120,8 @@ pub fn flow(job: &FlowJob<'_>, watch: &Watch, staging: &Staging) -> Result<FlowR
 /// A flow that is being written.
 struct Run<'a> {
     job: &'a FlowJob<'a>,
-    loaded: &'a Loaded,
-    colours: Colours,
-    beside: Option<&'a Destination>,
-    staging: &'a Staging,
+    files: ColouredFiles<'a>,
     watch: &'a Watch,
-    staged: Option<Staged>,
-    warnings: Vec<String>,
-    save_ms: f64,
 }
 
 impl Run<'_> {
@@ -152,38 +145,10 @@ impl Run<'_> {
                 if step == count {
                     progress = self.watch.begin("saving");
                 }
-                self.write(&flow.flow().dyes(), &place)?;
+                self.files.write(&flow.flow().dyes(), &place, self.watch)?;
             }
         }
         Ok(FrameTimes::of(&mut times, &mut []))
-    }
-
-    /// Writes the coloured file beside its place.
-    fn write(&mut self, dyes: &[[f64; 4]], place: &Path) -> Result<(), EngineError> {
-        let start = Instant::now();
-        let positions = self.loaded.model.rest_positions();
-        let colours = self.colours.with(dyes, &self.loaded.model);
-        let save = SaveAs {
-            colours: colours.as_deref(),
-            beside: self.beside.map(|report| ("--report", report)),
-            ..SaveAs::shape(&positions, place)
-        };
-        let saved = saving::stage(self.loaded, &save, self.staging, &Progress::new(), &self.watch.cancel)?;
-        for warning in saved.warnings {
-            if !self.warnings.contains(&warning) {
-                self.warnings.push(warning);
-            }
-        }
-        self.staged = Some(joined(self.staged.take(), saved.staged));
-        self.save_ms += ms_since(start);
-        Ok(())
-    }
-}
-
-fn joined(first: Option<Staged>, second: Staged) -> Staged {
-    match first {
-        Some(first) => first.and(second),
-        None => second,
     }
 }
 

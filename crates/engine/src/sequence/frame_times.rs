@@ -5,7 +5,7 @@
 //! fit none has frames at 24 a second, and one more at each of its keys.
 
 use crate::EngineError;
-use crate::animate::frame_count;
+use crate::frames::frame_count;
 
 /// The frames a second of an animation whose keys are frames of it.
 const FPS: f64 = 24.0;

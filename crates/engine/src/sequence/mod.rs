@@ -39,11 +39,11 @@ pub use self::report::SequenceReport;
 use self::run::{Run, To};
 use self::source::Source;
 use crate::EngineError;
-use crate::animate::{AnimationFiles, ExistingFrames, MORPH_TOLERANCE, MovedVertices, checked_places};
+use crate::animate::{AnimationFiles, MORPH_TOLERANCE, MovedVertices};
 use crate::apply::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::Staging;
-use crate::frames::Frames;
+use crate::frames::{ExistingFrames, Frames, checked_places};
 use crate::loading::Loaded;
 use crate::watch::Watch;
 

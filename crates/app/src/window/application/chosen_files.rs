@@ -71,11 +71,13 @@ impl Application {
             (Purpose::ExportEdit, Some(path)) => beside(path, "edit.json"),
             (Purpose::ExportFrames, _) => self.suggested_frames().unwrap_or_else(|| PathBuf::from("sequence")),
             (Purpose::ExportAnimation, Some(path)) => beside(path, "animation.glb"),
+            (Purpose::ExportFlow, Some(path)) => beside(path, "flow.glb"),
             (Purpose::SaveProject, Some(path)) => beside(path, "pliant"),
             (Purpose::SavePicture(_), Some(path)) => beside(path, "png"),
             (Purpose::SaveMorph, None) => PathBuf::from("morph.glb"),
             (Purpose::SaveProject, None) => PathBuf::from("edited.pliant"),
             (Purpose::ExportAnimation, None) => PathBuf::from("animation.glb"),
+            (Purpose::ExportFlow, None) => PathBuf::from("flow.glb"),
             (Purpose::ExportEdit, None) => PathBuf::from("edit.json"),
             (Purpose::SavePicture(_), None) => PathBuf::from("picture.png"),
         }
@@ -106,6 +108,7 @@ impl Application {
             (Purpose::Append, Some(path)) => self.append(path),
             (Purpose::ExportAnimation, Some(path)) => self.export_animation(&path),
             (Purpose::ExportFrames, Some(path)) => self.export_frames(&path),
+            (Purpose::ExportFlow, Some(path)) => self.export_flow(&path),
             (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::AddExample, Some(path)) => self.load_example(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {

@@ -1,13 +1,14 @@
-//! Copies of the unsaved work: an edit, a picture, an animation or the frames of a sequence.
+//! Copies of the unsaved work: an edit, a picture, an animation, the frames of a sequence or of a flow.
 
 use std::path::Path;
 use std::sync::Arc;
 
+use pliant_engine::flow::flow_frames_path;
 use pliant_engine::watch::Watch;
 use pliant_engine::{ExistingFrames, animation_path};
 
 use crate::window::application::Application;
-use crate::window::files::save_request::{AnimationToWrite, Content, FramesToWrite};
+use crate::window::files::save_request::{AnimationToWrite, Content, FlowToWrite, FramesToWrite};
 
 impl Application {
     /// Writes the edit, with the places by which other meshes find its parts, under `path`.
@@ -49,6 +50,23 @@ impl Application {
             }
             Err(error) => self.fail(error.to_string()),
         }
+    }
+
+    /// Writes a file for each frame of the flow that was played, in the present shape, off the window's thread.
+    pub fn export_flow(&mut self, path: &Path) {
+        let Some(open) = &self.session.open else { return };
+        let Some(recording) = self.editor.flow_recording().cloned() else {
+            return;
+        };
+        let flow = FlowToWrite {
+            recording,
+            shape: self.shape(),
+            mesh: open.mesh.clone(),
+            fps: self.editor.document().animation().fps(),
+            frames: ExistingFrames::Keep,
+            watch: Watch::default(),
+        };
+        self.save_copy(&flow_frames_path(path), Content::Flow(Box::new(flow)));
     }
 
     /// Writes all frames of the open sequence with the edit, off the window's thread.

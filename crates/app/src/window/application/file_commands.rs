@@ -64,10 +64,11 @@ impl Application {
             }
             FileCommand::SaveProjectAs => self.choose(Purpose::SaveProject),
             FileCommand::ExportEdit => self.choose(Purpose::ExportEdit),
-            FileCommand::ExportAnimation | FileCommand::ExportFrames => {
+            FileCommand::ExportAnimation | FileCommand::ExportFrames | FileCommand::ExportFlow => {
                 match (command.unavailable_because(&self.editor), command) {
                     (Some(why), _) => self.fail(why.to_owned()),
                     (None, FileCommand::ExportFrames) => self.choose(Purpose::ExportFrames),
+                    (None, FileCommand::ExportFlow) => self.choose(Purpose::ExportFlow),
                     (None, _) => self.choose(Purpose::ExportAnimation),
                 }
             }

@@ -95,7 +95,7 @@ impl Application {
         }
     }
 
-    fn shape(&self) -> Shape {
+    pub(super) fn shape(&self) -> Shape {
         Shape {
             displacements: self.editor.lasting_shape(),
             inside_out: Arc::clone(self.editor.document().inside_out()),
@@ -279,6 +279,7 @@ fn purpose(content: &Content) -> Purpose {
         Content::Edit(..) => Purpose::ExportEdit,
         Content::Animation(_) => Purpose::ExportAnimation,
         Content::Frames(_) => Purpose::ExportFrames,
+        Content::Flow(_) => Purpose::ExportFlow,
         Content::Picture(_) => Purpose::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,

@@ -68,6 +68,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &Recent<'_>) -> Option<
         FileCommand::ExportEdit,
         FileCommand::ExportAnimation,
         FileCommand::ExportFrames,
+        FileCommand::ExportFlow,
         FileCommand::ApplyEdit,
         FileCommand::Quit,
     ] {

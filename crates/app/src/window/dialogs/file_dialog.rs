@@ -37,6 +37,9 @@ const fn after_models<const COUNT: usize>(next: &'static str, last: &'static str
 /// The extensions of animations: one file, or with `-####` in its name one for each frame.
 const ANIMATIONS: &[&str] = &["glb", "gltf", "pc2", "mdd", "obj", "ply", "stl", "off", "3mf", "usdz"];
 
+/// The formats of models that have vertex colours.
+const COLOURED: &[&str] = &["glb", "gltf", "ply", "obj", "off"];
+
 /// The purpose of a dialog.
 struct Request {
     title: &'static str,
@@ -77,6 +80,7 @@ fn request(purpose: Purpose) -> Request {
         Purpose::ExportAnimation => ("Export the animation", Asked::ToSave, "Animations", ANIMATIONS),
         // A folder, or a file of the sequence's kind.
         Purpose::ExportFrames => ("Export the frames", Asked::ToSave, "Folders and files", &[]),
+        Purpose::ExportFlow => ("Export the flow", Asked::ToSave, "Models with colours", COLOURED),
         Purpose::SavePicture(_) => ("Save the picture as", Asked::ToSave, "Pictures", &["png"]),
     };
     Request {

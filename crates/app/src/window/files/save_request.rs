@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Dye, EditFile, SaveMark, Snapshot};
+use pliant_editor::{Dye, EditFile, FlowRecording, SaveMark, Snapshot};
 use pliant_mesh::Model as Mesh;
 use pliant_render::Image;
 
@@ -58,6 +58,8 @@ pub enum Content {
     Animation(Box<AnimationToWrite>),
     /// The frames of a sequence.
     Frames(Box<FramesToWrite>),
+    /// The frames of a flow.
+    Flow(Box<FlowToWrite>),
     /// A picture of the view.
     Picture(Arc<Image>),
 }
@@ -92,6 +94,23 @@ pub struct FramesToWrite {
     pub fps: Option<f64>,
     /// Whether numbered files may replace others.
     pub existing: ExistingFrames,
+    /// The stage of the work.
+    pub watch: Watch,
+}
+
+/// The frames of the flow that was played, on the present shape.
+#[derive(Clone)]
+pub struct FlowToWrite {
+    /// The flow.
+    pub recording: FlowRecording,
+    /// The shape in all frames.
+    pub shape: Shape,
+    /// The mesh as it was read.
+    pub mesh: RestMesh,
+    /// The frames a second.
+    pub fps: f64,
+    /// Whether numbered files may replace others.
+    pub frames: ExistingFrames,
     /// The stage of the work.
     pub watch: Watch,
 }
@@ -161,7 +180,7 @@ pub enum WrittenKind {
     Edit,
     /// The model at rest with the edit as a morph target, which is a copy beside the open file.
     Morph,
-    /// The model over time, which is a copy beside the open file.
+    /// The model over time, or its flow, which are copies beside the open file.
     Animation,
     /// The frames of the open sequence, beside it.
     Frames,
@@ -190,6 +209,7 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&animation.mesh),
+            Self::Flow(flow) => Some(&flow.mesh),
             Self::Frames(_) | Self::Edit(..) | Self::Picture(_) => None,
         }
     }
@@ -199,6 +219,7 @@ impl Content {
         match self {
             Self::Model(Model { mesh, .. }) | Self::Project(_, mesh) | Self::Morph(_, mesh) => Some(mesh),
             Self::Animation(animation) => Some(&mut animation.mesh),
+            Self::Flow(flow) => Some(&mut flow.mesh),
             Self::Frames(_) | Self::Edit(..) | Self::Picture(_) => None,
         }
     }
@@ -208,6 +229,7 @@ impl Content {
         match self {
             Self::Animation(animation) => Some(&animation.watch),
             Self::Frames(frames) => Some(&frames.watch),
+            Self::Flow(flow) => Some(&flow.watch),
             _ => None,
         }
     }
@@ -217,6 +239,7 @@ impl Content {
         match self {
             Self::Animation(animation) => animation.frames = ExistingFrames::Replace,
             Self::Frames(frames) => frames.existing = ExistingFrames::Replace,
+            Self::Flow(flow) => flow.frames = ExistingFrames::Replace,
             _ => {}
         }
     }

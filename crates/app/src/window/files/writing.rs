@@ -11,14 +11,15 @@ use super::in_file::SavedShape;
 use super::project_file;
 use super::rest_mesh::MeshSource;
 use super::save_request::{
-    AnimationToWrite, Changed, Content, KeepOriginal, Model, SaveRequest, Shape, Unwritten, Written, WrittenKind,
+    AnimationToWrite, Changed, Content, FlowToWrite, KeepOriginal, Model, SaveRequest, Shape, Unwritten, Written,
+    WrittenKind,
 };
 use super::written_frames;
 use crate::files::names::file_name;
 use crate::files::original::{Kept, Original};
 use pliant_editor::Beginning;
 use pliant_engine::files::{self, Staged, Staging, Stamp};
-use pliant_engine::flow::{ColoursToSave, with_dye};
+use pliant_engine::flow::{ColoursToSave, PlayedFlow, stage_played_flow, with_dye};
 use pliant_engine::saving::{self, SaveAs};
 use pliant_engine::{Animate, EditJob, MORPH_TOLERANCE, memory, stage_animation};
 use pliant_engine::{EngineError, Loaded};
@@ -189,6 +190,7 @@ fn ready(request: &SaveRequest, staging: &Staging, progress: &Progress, cancel: 
         // They are written by themselves.
         Content::Frames(_) => Err(EngineError::Interrupted),
         Content::Animation(animation) => ready_animation(animation, path, staging, cancel),
+        Content::Flow(flow) => ready_flow(flow, path, staging, cancel),
         Content::Model(model) => ready_model(model, path, staging, progress, cancel),
     }
 }
@@ -224,6 +226,28 @@ fn ready_animation(
     Ok(Ready {
         notes: animated.report.warnings,
         ..Ready::new(animated.staged, WrittenKind::Animation)
+    })
+}
+
+/// The frames of a flow.
+fn ready_flow(flow: &FlowToWrite, path: &Path, staging: &Staging, cancel: &Cancel) -> Result<Ready, EngineError> {
+    let loaded = &*flow.mesh.loaded;
+    let mut positions = Vec::new();
+    loaded.model.drawn_positions(&flow.shape.displacements, &mut positions);
+    let played = PlayedFlow {
+        recording: &flow.recording,
+        loaded,
+        positions: &positions,
+        inside_out: &flow.shape.inside_out,
+        output: path,
+        fps: flow.fps,
+        frames: flow.frames,
+        budget: memory::budget(),
+    };
+    let staged = stage_played_flow(&played, &flow.watch.stopped_by(cancel), staging)?;
+    Ok(Ready {
+        notes: staged.warnings,
+        ..Ready::new(staged.staged, WrittenKind::Animation)
     })
 }
 

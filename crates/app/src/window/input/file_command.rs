@@ -38,6 +38,8 @@ pub enum FileCommand {
     ExportAnimation,
     /// Write the frames of the open sequence with the edit.
     ExportFrames,
+    /// Write the frames of the flow that was played.
+    ExportFlow,
     /// Apply an edit from a file to the open mesh.
     ApplyEdit,
     /// Weld the open mesh's vertices in another way.
@@ -85,6 +87,10 @@ pub enum FileCommand {
 /// The reason for which the mesh can't be changed again.
 const BUSY: &str = "A change of the mesh is under way: wait until it has ended, or stop it.";
 
+/// The reason why no flow can be exported.
+const WITHOUT_FLOW: &str =
+    "No flow has just been played: play it, and export it before you change or undo anything about the dye.";
+
 impl FileCommand {
     /// The reason why it can't be done now; `None` if it can.
     pub fn unavailable_because(&self, editor: &Editor) -> Option<&'static str> {
@@ -109,6 +115,11 @@ impl FileCommand {
             }
             Self::ExportFrames if editor.document().animation().frames().is_none() => {
                 Some("No sequence is open: choose Open sequence… first.")
+            }
+            Self::ExportFlow if editor.view().is_playing => Some("The flow plays: pause it first."),
+            Self::ExportFlow => {
+                let is_recorded = editor.flow_recording().is_some();
+                (!is_recorded).then_some(WITHOUT_FLOW)
             }
             Self::ExportAnimation => {
                 let has_keys = !editor.document().animation().keys().is_empty();
@@ -162,6 +173,7 @@ impl FileCommand {
             | Self::SaveMorph
             | Self::ExportAnimation
             | Self::ExportFrames
+            | Self::ExportFlow
             | Self::ApplyEdit
             | Self::Weld(_)
             | Self::Append
@@ -186,7 +198,7 @@ impl FileCommand {
     }
 
     /// All commands that need no path, in the order of the menu.
-    pub const LISTED: [Self; 30] = [
+    pub const LISTED: [Self; 31] = [
         Self::Open,
         Self::OpenSequence,
         Self::NewFromSample,
@@ -199,6 +211,7 @@ impl FileCommand {
         Self::ExportEdit,
         Self::ExportAnimation,
         Self::ExportFrames,
+        Self::ExportFlow,
         Self::ApplyEdit,
         Self::Append,
         Self::MergeOptions,
@@ -255,6 +268,7 @@ impl FileCommand {
             Self::ExportEdit => "Export edit…",
             Self::ExportAnimation => "Export animation…",
             Self::ExportFrames => "Export frames…",
+            Self::ExportFlow => "Export flow…",
             Self::ApplyEdit => "Apply an edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
@@ -291,6 +305,7 @@ impl FileCommand {
             Self::ExportEdit => "json command line",
             Self::ExportAnimation => "keys timeline gltf glb pc2 mdd frames video bake write",
             Self::ExportFrames => "sequence folder 4d scan point cache pc2 mdd glb write save",
+            Self::ExportFlow => "fluid dye frames numbered files colours animation write save",
             Self::ApplyEdit => "json import load again scan",
             Self::SavePicture(_) => "screenshot render image png",
             Self::Quit => "exit close",

@@ -187,6 +187,8 @@ pub enum Purpose {
     ExportAnimation,
     /// To write the frames of a sequence to: a folder, a point cache or an animation.
     ExportFrames,
+    /// To write the frames of the flow that was played to: numbered files.
+    ExportFlow,
     /// To take an edit from, for the open mesh.
     ApplyEdit,
     /// To put beside the open shape.
