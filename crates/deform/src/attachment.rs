@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use glam::{DVec3, USizeVec3};
+use glam::DVec3;
 
 use super::AttachmentRefused;
 
@@ -159,6 +159,16 @@ impl Attachment {
         }
     }
 
+    /// The triangles of its outside: a mesh's own, or those of a lattice's six sides, two for each of their cells,
+    /// counterclockwise seen from outside.
+    pub fn outside(&self) -> Vec<[u32; 3]> {
+        match self {
+            Self::Mesh(mesh) => mesh.triangles.to_vec(),
+            Self::Lattice(lattice) => lattice_outside(lattice.counts),
+            Self::Shapes(_) => Vec::new(),
+        }
+    }
+
     /// Refuses a wrong length of `moved`, points that are not finite, triangles of vertices that do not exist, and
     /// weights that are too many, too few or too large.
     pub(crate) fn check(&self) -> Result<(), AttachmentRefused> {
@@ -244,19 +254,93 @@ pub(crate) fn finite(points: &[DVec3]) -> Result<(), AttachmentRefused> {
     }
 }
 
+/// The number of a lattice's point at a place along each axis.
+fn number(counts: [u32; 3], place: [u32; 3]) -> u32 {
+    place[0] + counts[0] * (place[1] + counts[1] * place[2])
+}
+
 fn lattice_edges(counts: [u32; 3]) -> Vec<[u32; 2]> {
-    let counts = USizeVec3::from_array(counts.map(|count| count as usize));
-    let number = |place: USizeVec3| (place.x + counts.x * (place.y + counts.y * place.z)) as u32;
     let mut edges = Vec::new();
-    for z in 0..counts.z {
-        for y in 0..counts.y {
-            for x in 0..counts.x {
-                let place = USizeVec3::new(x, y, z);
-                let next = USizeVec3::AXES.into_iter().map(|axis| place + axis);
-                let next = next.filter(|next| next.cmplt(counts).all());
-                edges.extend(next.map(|next| [number(place), number(next)]));
+    for z in 0..counts[2] {
+        for y in 0..counts[1] {
+            for x in 0..counts[0] {
+                let place = [x, y, z];
+                let next = [0, 1, 2].map(|axis| std::array::from_fn(|k| place[k] + u32::from(k == axis)));
+                let next = next.into_iter().filter(|next| (0..3).all(|k| next[k] < counts[k]));
+                edges.extend(next.map(|next| [number(counts, place), number(counts, next)]));
             }
         }
     }
     edges
+}
+
+fn lattice_outside(counts: [u32; 3]) -> Vec<[u32; 3]> {
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        let (right, up) = ((axis + 1) % 3, (axis + 2) % 3);
+        let last = counts[axis].saturating_sub(1);
+        for (i, j) in (1..counts[up]).flat_map(|j| (1..counts[right]).map(move |i| (i, j))) {
+            let at = |level: u32, i: u32, j: u32| {
+                let mut place = [level; 3];
+                (place[right], place[up]) = (i, j);
+                number(counts, place)
+            };
+            let cell = |level: u32| {
+                [
+                    at(level, i - 1, j - 1),
+                    at(level, i, j - 1),
+                    at(level, i, j),
+                    at(level, i - 1, j),
+                ]
+            };
+            let ([a, b, c, d], [e, f, g, h]) = (cell(last), cell(0));
+            triangles.extend([[a, b, c], [a, c, d], [e, g, f], [e, h, g]]);
+        }
+    }
+    triangles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{lattice_edges, lattice_outside};
+
+    #[test]
+    fn the_outside_of_a_lattice_is_closed_and_turned_outwards() {
+        for counts in [[2, 2, 2], [3, 4, 3], [2, 5, 4]] {
+            let place = |point: u32| {
+                let [x, y, _] = counts;
+                glam::DVec3::new(
+                    f64::from(point % x),
+                    f64::from(point / x % y),
+                    f64::from(point / (x * y)),
+                )
+            };
+            let triangles = lattice_outside(counts);
+            let volume: f64 = triangles
+                .iter()
+                .map(|corners| {
+                    let [a, b, c] = corners.map(place);
+                    a.dot(b.cross(c)) / 6.0
+                })
+                .sum();
+            let box_volume: u32 = counts.iter().map(|count| count - 1).product();
+            assert!((volume - f64::from(box_volume)).abs() < 1e-9, "{counts:?}: {volume}");
+            let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            for [a, b] in sides() {
+                assert_eq!(
+                    sides().filter(|side| *side == [b, a]).count(),
+                    1,
+                    "{counts:?}: {a} to {b}"
+                );
+            }
+            // Its lines between neighbouring points are edges of the lattice.
+            let edges = lattice_edges(counts);
+            let straight = sides().filter(|[a, b]| place(*a).distance(place(*b)) < 1.1);
+            assert!(
+                straight
+                    .map(|[a, b]| [a.min(b), a.max(b)])
+                    .all(|side| edges.contains(&side))
+            );
+        }
+    }
 }

@@ -128,7 +128,10 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     } else if document.handles().is_empty() && document.examples().is_some() && document.bends_without_handles() {
         "Drag an example's weight, or paint a handle (1)"
     } else if document.handles().is_empty() && document.bends_without_handles() {
-        "Click a point of the cage or lattice and drag it, or paint a handle (1)"
+        match settings.mode {
+            ToolMode::Select => "Click a point of the cage or lattice and drag it, or paint a handle (1)",
+            _ => "Press 5 to see the points of the cage or lattice and drag them, or paint a handle (1)",
+        }
     } else if document.handles().is_empty() {
         match settings.mode {
             ToolMode::PaintHandle => "Paint the part that you want to move",

@@ -39,7 +39,7 @@ fn boxed(middle: DVec3, half: DVec3) -> Drawn {
 fn point_beside(session: &Session) -> Pos2 {
     let application = session.harness.state();
     let (editor, view) = (application.editor(), application.editor().view());
-    let squares = view.controls[3..].iter().flat_map(|shape| shape.triangles.chunks(2));
+    let squares = view.controls[4..].iter().flat_map(|shape| shape.triangles.chunks(2));
     let seen = squares.filter_map(|square| {
         let middle = (square[0][0] + square[0][2]) * 0.5;
         view.camera.project(middle, view.viewport_px)

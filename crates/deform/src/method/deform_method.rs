@@ -101,12 +101,6 @@ pub(crate) trait DeformMethod: Options {
         Ok(())
     }
 
-    /// The method with the options for control points that a person moves without handles, if other options suit that
-    /// better.
-    fn by_hand(&self) -> Option<Method> {
-        None
-    }
-
     /// The rest positions of a lattice's control points, for a method with a lattice.
     fn lattice_points(&self, _lattice: &ControlLattice) -> Vec<DVec3> {
         Vec::new()

@@ -122,12 +122,6 @@ impl Method {
         self.0.examples_bend()
     }
 
-    /// The same with the options for control points that a person moves without handles.
-    #[must_use]
-    pub fn by_hand(self) -> Self {
-        self.0.by_hand().unwrap_or(self)
-    }
-
     /// The rest positions of an attachment's points, in world units. A lattice's depend on the options; examples have
     /// none.
     pub fn control_rest(&self, attachment: &Attachment) -> Vec<DVec3> {

@@ -385,8 +385,9 @@ fn a_lattice_bends_as_its_box_and_counts_say_whatever_the_resolution() {
 }
 
 #[test]
-fn a_lattice_for_hands_has_few_points_on_its_box() {
-    let method = Method::from_name("lattice").unwrap().by_hand();
+fn a_person_begins_with_few_points_of_a_lattice_on_its_box() {
+    let declaration = Method::from_name("lattice").unwrap().declaration();
+    let method = (declaration.first_choice)();
     let scene = brought(sphere(&method));
     let rest = scene.method.control_rest(&scene.attachments[0].1);
     assert_eq!(rest.len(), 3 * 4 * 3);
@@ -394,8 +395,4 @@ fn a_lattice_for_hands_has_few_points_on_its_box() {
     let beyond = |p: &DVec3| (bounds.min - *p).max(*p - bounds.max).max_element();
     let farthest = rest.iter().map(beyond).fold(0.0, f64::max);
     assert!((0.0..=0.06 * bounds.diagonal()).contains(&farthest), "{farthest}");
-    for other in ["cage", "arap"] {
-        let own = Method::from_name(other).unwrap();
-        assert_eq!(own.clone().by_hand(), own, "only a lattice has other options for hands");
-    }
 }

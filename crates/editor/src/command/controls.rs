@@ -3,6 +3,7 @@
 use pliant_deform::{Attachment, AttachmentKind};
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless, when_open};
+use crate::tool::ToolMode;
 use crate::workspace::{bring_attachment, make_controls, reset_controls};
 
 /// Makes the method's own cage or lattice replace the document's.
@@ -62,8 +63,11 @@ pub(super) const SELECT_CONTROLS: Entry<()> = Entry {
     },
     action: Action::Do(|context, ()| {
         let shown = context.workspace.shown_controls();
-        let count = shown.map_or(0, |shown| shown.positions.len() as u32);
-        context.workspace.controls.put(0..count);
+        let Some(shown) = shown else { return };
+        if !context.settings.shows(&shown.source) {
+            context.settings.mode = ToolMode::Select;
+        }
+        context.workspace.controls.put(0..shown.positions.len() as u32);
     }),
 };
 

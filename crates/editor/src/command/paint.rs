@@ -42,7 +42,7 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
         item(
             ToolMode::Select,
             "Select",
-            "Click a handle to select it; drag it to move it in the plane of the screen.",
+            "Click a handle to select it; drag it to move it in the plane of the screen. Shows a cage or lattice, and moves its points.",
             "pick cursor arrow",
             &[character('5')],
         ),

@@ -15,7 +15,9 @@ use crate::document::{Document, SavedAs};
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Asked, Executor, JobDone, JobKind};
-use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover, tint};
+use crate::tool::{
+    Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, drop_unseen, hover, tint,
+};
 use crate::view::{Shading, UpAxis, View, up_axis_of};
 use crate::workspace::{ColouredBy, Workspace, merge_held, take_mirrored, take_stitched};
 
@@ -197,6 +199,7 @@ impl Editor {
             hover(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
         }
         tint(&mut self.workspace, &self.view, hovering_px, self.settings.whole_limb);
+        drop_unseen(&mut self.workspace, &self.settings);
         self.workspace.follow_flow(gesture.is_none());
         self.workspace.follow_skins(&self.view.look, activity);
         self.workspace.conclude(activity, by, asked);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_deform::{Method, MethodDeclaration, Role};
+use pliant_deform::Role;
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
@@ -140,7 +140,7 @@ impl Editor {
         if matches!(shown.source, ControlSource::Curve(..)) {
             return None;
         }
-        let count = self.overlay.control_points.len();
+        let count = shown.positions.len();
         (count > 0).then(|| ControlPoints {
             title: declared.title,
             count,
@@ -306,16 +306,6 @@ impl Editor {
                 .work_pose()
                 .map(|_| self.document().present_pose("work pose".to_owned())),
         })
-    }
-
-    /// The options with which a person begins to use a method: without handles, those for control points moved by hand.
-    pub fn first_choice(&self, declaration: &MethodDeclaration) -> Method {
-        let method = (declaration.first_choice)();
-        if self.document().handles().is_empty() {
-            method.by_hand()
-        } else {
-            method
-        }
     }
 
     /// The document outside its work pose, which files get.

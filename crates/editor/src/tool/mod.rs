@@ -61,6 +61,7 @@ mod taken_handle;
 mod transform;
 mod transform_measure;
 mod uncut_reach;
+mod unseen_controls;
 mod widen;
 
 pub(crate) use adjust::Adjust;
@@ -82,4 +83,5 @@ pub(crate) use size::SizeBrush;
 pub use stiffness_brush::{StiffnessAction, StiffnessBrush};
 pub(crate) use transform::TransformDrag;
 pub(crate) use transform_measure::TransformKind;
+pub(crate) use unseen_controls::drop_unseen;
 pub(crate) use widen::Widen;

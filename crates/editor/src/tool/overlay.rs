@@ -19,10 +19,10 @@ use super::taken_handle::is_taken_along;
 use crate::document::HandleTransform;
 use crate::input::Pointer;
 use crate::view::{
-    Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
-    hit_gizmo,
+    Camera, ControlLines, ControlShape, GizmoAxes, GizmoPart, GizmoShape, NetSides, ShownPoint, View, control_at,
+    control_shapes, gizmo_shapes, hit_gizmo,
 };
-use crate::workspace::{ControlSource, Workspace, middle};
+use crate::workspace::{ControlSource, ShownLines, Workspace, middle};
 
 /// The shown part of the overlay, by the active gesture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -116,7 +116,7 @@ impl Overlay {
         let pointer_px = pointer.map(|pointer| pointer.position_px);
         let gizmo_of = |part| gizmo(lit, workspace, camera, viewport_px, settings, part).unwrap_or_default();
         let mut gizmo = gizmo_of(None);
-        let lines = self.place_controls(workspace, view);
+        let lines = self.place_controls(workspace, view, settings);
         let highlighted = match (lit, pointer_px) {
             (Lit::Pointed, Some(pointer_px)) if !settings.waits_for_press() => self.hit(&gizmo, pointer_px, view),
             (Lit::Gizmo(part), _) => part,
@@ -195,14 +195,20 @@ impl Overlay {
         self.rims.shapes(workspace, view, wanted, self.rim.as_ref())
     }
 
-    /// Finds the visible control points; returns the lines between them, and whether they are a curve's.
-    fn place_controls(&mut self, workspace: &Workspace, view: &View) -> Option<(Vec<[DVec3; 2]>, bool)> {
+    /// Finds the visible control points; returns the lines between them. A net around the model would be in the way of
+    /// every tool but the one that moves its points.
+    fn place_controls(&mut self, workspace: &Workspace, view: &View, settings: &ToolSettings) -> Option<ControlLines> {
         self.control_points.clear();
-        let shown = workspace.shown_controls()?;
+        let shown = workspace
+            .shown_controls()
+            .filter(|shown| settings.shows(&shown.source))?;
         self.hidden.look(&shown.positions, workspace, view);
-        let pinned = match &shown.source {
-            ControlSource::Curve(_, curve, _) => curve.pinned(),
-            ControlSource::Attachment(..) => &[],
+        let (pinned, sides) = match &shown.source {
+            ControlSource::Curve(_, curve, _) => (curve.pinned(), None),
+            ControlSource::Attachment(_, net) => {
+                let sides = NetSides::of(&shown.positions, &net.outside(), view.camera());
+                (&[][..], Some(sides))
+            }
         };
         let points = shown.positions.iter().zip(self.hidden.are_hidden()).zip(0..);
         self.control_points
@@ -211,28 +217,37 @@ impl Overlay {
                 is_hidden,
                 is_selected: workspace.controls.contains(number),
                 is_pinned: pinned.contains(&number),
+                is_back: sides.as_ref().is_some_and(|sides| sides.is_back(number)),
                 is_pointed_at: false,
             }));
-        let is_curve = matches!(shown.source, ControlSource::Curve(..));
-        Some((shown.lines, is_curve))
+        let edges = match shown.lines {
+            ShownLines::Curve(lines) => return Some(ControlLines::Curve(lines)),
+            ShownLines::Net(edges) => edges,
+        };
+        let is_back = |edge: &[u32; 2]| sides.as_ref().is_some_and(|sides| sides.is_back_edge(*edge));
+        let (back, front): (Vec<[u32; 2]>, Vec<[u32; 2]>) = edges.iter().partition(|edge| is_back(edge));
+        let line = |edge: [u32; 2]| edge.map(|end| shown.positions[end as usize]);
+        Some(ControlLines::Net {
+            front: front.into_iter().map(line).collect(),
+            back: back.into_iter().map(line).collect(),
+        })
     }
 
     /// The shapes of the control points with their lines; `pointer_px` is the pointer's place if it may take a point.
     fn draw_controls(
         &mut self,
-        lines: Option<(Vec<[DVec3; 2]>, bool)>,
+        lines: Option<ControlLines>,
         pointer_px: Option<DVec2>,
         view: &View,
     ) -> Vec<ControlShape> {
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
-        let is_curve = lines.as_ref().is_some_and(|(_, is_curve)| *is_curve);
+        let is_curve = lines.as_ref().is_some_and(ControlLines::is_curve);
         let near = |px| control_at(&self.control_points, is_curve, px, camera, viewport_px);
         self.pointed_control = pointer_px.and_then(near);
         if let Some(point) = self.pointed_control {
             self.control_points[point as usize].is_pointed_at = true;
         }
-        let drawn =
-            lines.map(|(lines, is_curve)| control_shapes(&self.control_points, lines, is_curve, camera, viewport_px));
+        let drawn = lines.map(|lines| control_shapes(&self.control_points, lines, camera, viewport_px));
         drawn.unwrap_or_default()
     }
 }
@@ -286,6 +301,7 @@ fn gizmo(
     if is_shown
         && !workspace.controls.is_empty()
         && let Some(shown) = workspace.shown_controls()
+        && settings.shows(&shown.source)
     {
         let points = workspace.controls.points().iter();
         let seen: Vec<DVec3> = points

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::view::{ControlShape, GRAB_PX, ShownPoint, View, control_shapes, distance_to_segment};
+use crate::view::{ControlLines, ControlShape, GRAB_PX, ShownPoint, View, control_shapes, distance_to_segment};
 use crate::workspace::Workspace;
 
 /// The body's own way under a bent one.
@@ -81,11 +81,13 @@ impl PathPlaces {
                 is_selected: frame == self.shown,
                 is_pinned: false,
                 is_hidden: false,
+                is_back: false,
                 is_pointed_at: Some(frame) == pointed,
             })
         };
         let points: Vec<ShownPoint> = marked.into_iter().filter_map(point).collect();
-        let bent = control_shapes(&points, lines(&self.bent), true, view.camera(), view.viewport_px());
+        let bent = ControlLines::Curve(lines(&self.bent));
+        let bent = control_shapes(&points, bent, view.camera(), view.viewport_px());
         std::iter::once(ControlShape::lines(OWN, lines(&self.own)))
             .chain(bent)
             .collect()

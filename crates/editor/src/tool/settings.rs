@@ -12,6 +12,7 @@ use crate::cut::CutStroke;
 use crate::document::{HandleId, Paint};
 use crate::stitching::MergeSettings;
 use crate::view::{GizmoMode, GizmoOrientation};
+use crate::workspace::ControlSource;
 
 /// The tool, its brushes and the gizmo.
 #[derive(Clone, PartialEq, Debug)]
@@ -106,6 +107,12 @@ impl ToolSettings {
     pub(crate) fn draws_curves(&self) -> bool {
         let is_curve = self.stroke_shape.is_line() && self.stroke_shape != StrokeShape::Sketch;
         self.mode == ToolMode::PaintHandle && is_curve
+    }
+
+    /// Returns true if the chosen tool shows these control points: those of a curve always, and a cage or lattice only
+    /// if it can move them.
+    pub(crate) fn shows(&self, source: &ControlSource) -> bool {
+        self.mode == ToolMode::Select || matches!(source, ControlSource::Curve(..))
     }
 
     /// Returns true if the next press has a purpose of its own.

@@ -1,5 +1,5 @@
 //! The drawing of a cage or a lattice over the surface: its edges as lines and its points as squares of constant size
-//! on the screen. The renderer fades the parts that the surface hides.
+//! on the screen. The renderer fades the parts that the surface hides; the back of a cage or lattice is grey and faint.
 
 use glam::{DVec2, DVec3};
 
@@ -53,7 +53,27 @@ pub(crate) struct ShownPoint {
     pub(crate) is_selected: bool,
     pub(crate) is_pinned: bool,
     pub(crate) is_hidden: bool,
+    /// True at the back of a cage or lattice.
+    pub(crate) is_back: bool,
     pub(crate) is_pointed_at: bool,
+}
+
+/// The lines between control points, in world space.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum ControlLines {
+    /// A curve.
+    Curve(Vec<[DVec3; 2]>),
+    /// A cage or lattice: the edges that are turned to the eye, and those at its back.
+    Net {
+        front: Vec<[DVec3; 2]>,
+        back: Vec<[DVec3; 2]>,
+    },
+}
+
+impl ControlLines {
+    pub(crate) fn is_curve(&self) -> bool {
+        matches!(self, Self::Curve(_))
+    }
 }
 
 impl ShownPoint {
@@ -66,6 +86,8 @@ impl ShownPoint {
 
 /// Blue, orange and near-black are distinct from clay, from each other and from both themes' grounds.
 const EDGE: [u8; 4] = [58, 128, 220, 220];
+const BACK_EDGE: [u8; 4] = [128, 134, 144, 80];
+const BACK_POINT: [u8; 4] = [150, 156, 166, 150];
 const CURVE: [u8; 4] = [255, 214, 110, 255];
 const CURVE_HIDDEN_SHARE: f32 = 0.75;
 const POINT: [u8; 4] = [120, 180, 255, 255];
@@ -86,12 +108,11 @@ pub(crate) const GRAB_PX: f64 = 8.0;
 /// The same of a curve's points, which are far apart: a press beside one would draw another line.
 const CURVE_GRAB_PX: f64 = 18.0;
 
-/// The shapes: edges, the frames of pinned points, the points' rims, points and selected ones. A curve inside a limb is
-/// visible through it.
+/// The shapes: edges at the back and in front, the frames of pinned points, the points' rims, points at the back and in
+/// front, and selected ones. A curve inside a limb is visible through it.
 pub(crate) fn control_shapes(
     points: &[ShownPoint],
-    lines: Vec<[DVec3; 2]>,
-    is_curve: bool,
+    lines: ControlLines,
     camera: &Camera,
     viewport_px: DVec2,
 ) -> Vec<ControlShape> {
@@ -103,15 +124,19 @@ pub(crate) fn control_shapes(
         });
         ControlShape::filled(colour, squares.collect())
     };
-    let (colour, hidden_share) = match is_curve {
-        true => (CURVE, CURVE_HIDDEN_SHARE),
-        false => (EDGE, HIDDEN_SHARE),
+    let (colour, hidden_share, lines, back) = match lines {
+        ControlLines::Curve(lines) => (CURVE, CURVE_HIDDEN_SHARE, lines, Vec::new()),
+        ControlLines::Net { front, back } => (EDGE, HIDDEN_SHARE, front, back),
     };
+    // A point that is taken or about to be is as clear at the back as in front.
+    let is_faint = |point: &ShownPoint| point.is_back && !point.is_selected && !point.is_pointed_at;
     let shapes = [
+        ControlShape::lines(BACK_EDGE, back),
         ControlShape::lines(colour, lines),
         squares(PIN, PIN_PX, &|point| point.is_pinned),
-        squares(RIM, RIM_PX, &|_| true),
-        squares(POINT, 0.0, &|point| !point.is_selected),
+        squares(RIM, RIM_PX, &|point| !is_faint(point)),
+        squares(BACK_POINT, 0.0, &|point| is_faint(point)),
+        squares(POINT, 0.0, &|point| !point.is_selected && !is_faint(point)),
         squares(SELECTED, 0.0, &|point| point.is_selected),
     ];
     shapes.map(|shape| shape.with_hidden_share(hidden_share)).to_vec()
@@ -126,8 +151,8 @@ fn square(position: DVec3, half_px: f64, camera: &Camera, viewport_px: DVec2) ->
     [[a, b, c], [a, c, d]]
 }
 
-/// The point under the pointer: of those near it a visible one, and of these the nearest to the eye; of a curve's
-/// points the nearest to the pointer.
+/// The point under the pointer: of those near it a visible one in front, and of these the nearest to the eye; of a
+/// curve's points the nearest to the pointer.
 pub(crate) fn control_at(
     points: &[ShownPoint],
     is_curve: bool,
@@ -141,7 +166,8 @@ pub(crate) fn control_at(
             true => (CURVE_GRAB_PX, distance_px),
             false => (GRAB_PX, (point.position - camera.eye()).length()),
         };
-        (distance_px <= reach_px).then_some((!is_curve && point.is_hidden, rank, number as u32))
+        let is_behind = !is_curve && (point.is_hidden || point.is_back);
+        (distance_px <= reach_px).then_some((is_behind, rank, number as u32))
     });
     let first = near.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     first.map(|(_, _, number)| number)

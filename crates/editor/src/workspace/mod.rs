@@ -84,7 +84,7 @@ pub(crate) use path::{BEND_PATH, bend_path, free_path, put_path};
 pub(crate) use poses::{keep_pose, remove_pose, rename_pose, renew_pose, take_pose};
 pub use regions::RegionAction;
 pub(crate) use regions::act_on_region;
-pub(crate) use shown_controls::ControlSource;
+pub(crate) use shown_controls::{ControlSource, ShownLines};
 pub use snapshot::SnapshotKey;
 pub(crate) use state::Workspace;
 pub use stiffness::StiffnessChange;

@@ -16,8 +16,17 @@ const SEGMENTS: usize = 12;
 #[derive(Clone, Debug)]
 pub(crate) struct ShownControls {
     pub(crate) positions: Arc<Vec<DVec3>>,
-    pub(crate) lines: Vec<[DVec3; 2]>,
+    pub(crate) lines: ShownLines,
     pub(crate) source: ControlSource,
+}
+
+/// The lines between control points.
+#[derive(Clone, Debug)]
+pub(crate) enum ShownLines {
+    /// A curve, in segments.
+    Curve(Vec<[DVec3; 2]>),
+    /// The edges of a cage or lattice, each with its lower point first.
+    Net(Arc<Vec<[u32; 2]>>),
 }
 
 /// The owner of control points.
@@ -39,9 +48,8 @@ impl Workspace {
                 edges,
                 positions,
             } = self.shown_attachment()?;
-            let lines = edges.iter().map(|edge| edge.map(|end| positions[end as usize]));
             Some(ShownControls {
-                lines: lines.collect(),
+                lines: ShownLines::Net(edges),
                 positions,
                 source: ControlSource::Attachment(name, attachment),
             })
@@ -64,8 +72,9 @@ impl Workspace {
             let at = move |step: usize| from + (to - from) * step as f64 / SEGMENTS as f64;
             (0..SEGMENTS).map(move |step| [at(step), at(step + 1)])
         });
+        let lines = lines.map(|ends| ends.map(|at| place(moved.position(at))));
         Some(ShownControls {
-            lines: lines.map(|ends| ends.map(|at| place(moved.position(at)))).collect(),
+            lines: ShownLines::Curve(lines.collect()),
             positions: Arc::new(positions),
             source: ControlSource::Curve(handle.id, curve.clone(), then),
         })

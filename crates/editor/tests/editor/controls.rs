@@ -21,8 +21,8 @@ fn ball(method: &str) -> Rig {
 /// The control points' places on the screen, unselected ones first.
 fn points_px(rig: &Rig) -> Vec<DVec2> {
     let view = rig.editor.view();
-    // After the edges, the frames of pinned points and the rims.
-    let squares = view.controls[3..].iter().flat_map(|shape| shape.triangles.chunks(2));
+    // After the edges at the back and in front, the frames of pinned points and the rims.
+    let squares = view.controls[4..].iter().flat_map(|shape| shape.triangles.chunks(2));
     let middles = squares.map(|square| (square[0][0] + square[0][2]) * 0.5);
     middles.map(|p| view.camera.project(p, VIEWPORT_PX).unwrap()).collect()
 }
@@ -245,16 +245,47 @@ fn handles_are_met_beside_moved_points_and_both_are_undone_step_by_step() {
 }
 
 #[test]
-fn a_brush_paints_through_points_before_the_surface() {
-    let mut rig = ball("cage");
-    rig.command(Command::SetTool(ToolMode::PaintHandle));
-    let over = points_px(&rig)
-        .into_iter()
-        .find(|p| p.distance(CENTRE_PX) < 120.0)
-        .unwrap();
-    rig.swipe(&[over]);
-    rig.drain();
-    assert_eq!((selected(&rig), rig.editor.document().handles().len()), (0, 1));
+fn the_net_is_shown_and_taken_by_the_select_tool_alone() {
+    for method in ["cage", "lattice"] {
+        let mut rig = ball(method);
+        let shown = points_px(&rig);
+        let (over, outside) = (
+            *shown.iter().find(|p| p.distance(CENTRE_PX) < 120.0).unwrap(),
+            beside(&rig),
+        );
+        let tools = [
+            ToolMode::PaintHandle,
+            ToolMode::PaintFree,
+            ToolMode::PaintFixed,
+            ToolMode::Erase,
+            ToolMode::PaintStiffness,
+            ToolMode::Pose,
+            ToolMode::Correct,
+            ToolMode::Flow,
+        ];
+        for tool in tools {
+            rig.command(Command::SetTool(ToolMode::Select));
+            rig.command(Command::SelectControls);
+            rig.command(Command::SetTool(tool));
+            let points = rig.editor.view().control_points.unwrap();
+            assert_eq!((points.count, points.selected), (shown.len(), 0), "{method} {tool:?}");
+            assert!(rig.editor.view().controls.is_empty(), "{method} {tool:?}");
+            rig.swipe(&[outside]);
+            assert!(selected(&rig) == 0 && !is_own(&rig), "{method} {tool:?}");
+        }
+        // All points are selected where they are seen.
+        rig.command(Command::SelectControls);
+        assert_eq!(rig.editor.view().tool, ToolMode::Select);
+        assert_eq!(
+            (selected(&rig), points_px(&rig).len()),
+            (shown.len(), shown.len()),
+            "{method}"
+        );
+        rig.command(Command::SetTool(ToolMode::PaintHandle));
+        rig.swipe(&[over]);
+        rig.drain();
+        assert_eq!((selected(&rig), rig.editor.document().handles().len()), (0, 1));
+    }
 }
 
 #[test]

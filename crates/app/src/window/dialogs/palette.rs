@@ -158,7 +158,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         obstacle: command.unavailable_because(editor).map(str::to_owned),
     });
     let methods = METHODS.iter().map(|declaration| {
-        let command = Command::SetMethod(editor.first_choice(declaration));
+        let command = Command::SetMethod((declaration.first_choice)());
         Entry {
             name: format!("Method: {}", declaration.title),
             tooltip: declaration.explanation(),

@@ -44,7 +44,7 @@ const COMPARE: f32 = 44.0;
 fn options(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     let declared = method.declaration();
-    let first_choice = editor.first_choice(declared);
+    let first_choice = (declared.first_choice)();
     for (title, is_advanced) in [("Options", false), ("Advanced", true)] {
         let mut own = declared
             .options
@@ -96,8 +96,8 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     };
     ui.label(sentence).on_hover_text(
-        "Click a point to select it, Shift-click to add one; the Select tool also selects many with Ctrl and a drag, \
-         a box or a lasso. Move them with the gizmo, G, R or S.",
+        "The Select tool shows them: click a point to select it, Shift-click to add one, and select many with Ctrl and a \
+         drag, a box or a lasso. Move them with the gizmo, G, R or S.",
     );
     ui.horizontal_wrapped(|ui| {
         let make = ui.add_enabled(
@@ -154,7 +154,7 @@ fn choose_method(ui: &mut egui::Ui, editor: &Editor, width: f32, commands: &mut 
                 });
                 let paper = RichText::new(declaration.paper).weak().small();
                 let button = Button::selectable(is_present, (picture, declaration.title)).right_text(paper);
-                let command = Command::SetMethod(editor.first_choice(declaration));
+                let command = Command::SetMethod((declaration.first_choice)());
                 let why_not = editor.unavailable_because(&command).filter(|_| !is_present);
                 let choice = ui.add_enabled(why_not.is_none(), button);
                 let choice = choice.on_hover_text(declaration.explanation());

@@ -6,7 +6,7 @@ use glam::{DVec3, Mat3};
 
 use super::fit::{fit_bytes, fitted, soft_unit};
 use super::grid::Grid;
-use super::{Lattice, LatticeBasis, brought};
+use super::{Lattice, brought};
 use crate::attachment::{Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice};
 use crate::attachment_refused::AttachmentRefused;
 use crate::handles::Motion;
@@ -20,7 +20,7 @@ use crate::space::falloff::Falloff;
 use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
 use crate::space::hand_field::HandField;
-use crate::{BindError, Method, Picture, SolveError};
+use crate::{BindError, Picture, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "lattice",
@@ -42,11 +42,8 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     }],
     heeds: &[ConstraintKind::SoftHandles],
     default: || Lattice::default().into(),
-    first_choice: || Lattice::default().into(),
+    first_choice: || Lattice::first_choice().into(),
 };
-
-/// The cells of a lattice that a person moves by hand: 3 × 4 × 3 points.
-const BY_HAND: [u32; 3] = [2, 3, 2];
 
 /// The most samples of a handle, or of the fixed vertices.
 const SAMPLES: usize = 20_000;
@@ -111,22 +108,6 @@ impl DeformMethod for Lattice {
 
     fn handle_row_bytes(&self) -> usize {
         FIELD_ROW
-    }
-
-    /// Few points, all of them on the box: those of B-splines lie beyond it and hardly move anything there.
-    fn by_hand(&self) -> Option<Method> {
-        let [resolution_x, resolution_y, resolution_z] = BY_HAND;
-        let basis = LatticeBasis::Bernstein;
-        Some(
-            Self {
-                basis,
-                resolution_x,
-                resolution_y,
-                resolution_z,
-                ..self.clone()
-            }
-            .into(),
-        )
     }
 
     fn lattice_points(&self, lattice: &ControlLattice) -> Vec<DVec3> {

@@ -55,6 +55,24 @@ options! {
     }
 }
 
+/// The cells with which a person begins: 3 × 4 × 3 points.
+const FEW: [u32; 3] = [2, 3, 2];
+
+impl Lattice {
+    /// The options with which a person begins, who sees and moves the points: few of them, and all on the box. Those of
+    /// B-splines lie beyond it and hardly move anything there.
+    pub(super) fn first_choice() -> Self {
+        let [resolution_x, resolution_y, resolution_z] = FEW;
+        Self {
+            basis: LatticeBasis::Bernstein,
+            resolution_x,
+            resolution_y,
+            resolution_z,
+            ..Self::default()
+        }
+    }
+}
+
 named_choices! {
     /// The functions of a lattice.
     pub enum LatticeBasis {
