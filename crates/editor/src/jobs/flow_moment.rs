@@ -9,7 +9,7 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 use crate::document::{FlowOptions, Fluid};
 
 /// The length of a step, in seconds: a picture of a common screen.
-pub(crate) const FLOW_STEP: f64 = 1.0 / 60.0;
+pub(super) const FLOW_STEP: f64 = 1.0 / 60.0;
 
 /// The fluid that a brush puts in place of the one under it.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -36,7 +36,7 @@ pub use compared::{Compared, Figures};
 pub use comparison::Comparison;
 pub(crate) use computed::Computed;
 pub use enclosed::Enclosed;
-pub(crate) use flow_moment::{FLOW_STEP, FlowMoment, Poured, Splash};
+pub(crate) use flow_moment::{FlowMoment, Poured, Splash};
 pub use flow_recording::FlowRecording;
 pub(crate) use flowed::FlowRequest;
 pub use flowed::Flowed;

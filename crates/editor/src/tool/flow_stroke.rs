@@ -6,13 +6,14 @@
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex, face_normal};
 
+use super::brush_speed::BrushSpeed;
 use super::context::Context;
 use super::firmness::firmness;
 use super::flow_brush::{FlowAction, FlowBrush};
 use super::stroke::{Stroke, StrokeGesture, firmest_on_one_side};
 use crate::document::{Document, Dye, from_srgb};
 use crate::input::Pointer;
-use crate::jobs::{FLOW_STEP, Poured, Splash};
+use crate::jobs::{Poured, Splash};
 use crate::workspace::Workspace;
 
 /// The stroke's action.
@@ -21,8 +22,7 @@ pub(super) struct FlowStroke {
     brush: FlowBrush,
     /// The firmest dab on each vertex in this stroke.
     firmest: Vec<f32>,
-    /// The brush's last point on the surface, and the time in milliseconds.
-    last: Option<(DVec3, f64)>,
+    speed: BrushSpeed,
 }
 
 impl FlowStroke {
@@ -41,24 +41,21 @@ impl FlowStroke {
         let stroke = Self {
             brush,
             firmest: vec![0.0; context.workspace.document.paint().len()],
-            last: None,
+            speed: BrushSpeed::default(),
         };
         StrokeGesture::begin(context, transaction, stroke, pointer)
     }
 
-    /// The velocity of the brush since its last dab, in world units per second. Without a clock, dabs are a step apart.
+    /// The velocity of the brush, in world units per second.
     fn velocity(&mut self, context: &Context<'_>, to_px: DVec2) -> Option<DVec3> {
         let now_ms = context.workspace.jobs.now_ms();
-        let point = context.workspace.pick(context.view, to_px).map(|pick| pick.point);
-        let before = self.last;
-        self.last = point.map(|point| (point, now_ms));
-        let ((from, then_ms), to) = (before?, point?);
-        let seconds = match (now_ms - then_ms) * 1e-3 {
-            passed if passed > 0.0 => passed.max(1e-3),
-            _ => FLOW_STEP,
-        };
-        // A brush that rests does not hold the fluid.
-        (from != to).then(|| (to - from) / seconds)
+        match context.workspace.pick(context.view, to_px) {
+            Some(pick) => self.speed.at(pick.point, now_ms),
+            None => {
+                self.speed.leave();
+                None
+            }
+        }
     }
 
     /// The fluid that is poured, if any.

@@ -7,6 +7,7 @@
 mod adjust;
 mod begin;
 mod brush;
+mod brush_speed;
 mod constraint;
 mod context;
 mod control_box;
