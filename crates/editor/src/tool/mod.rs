@@ -49,6 +49,7 @@ mod size;
 mod sketch_stroke;
 mod smooth;
 mod smooth_image;
+mod sought_stroke;
 mod spine;
 mod spine_tips;
 mod stiffness;
