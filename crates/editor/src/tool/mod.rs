@@ -34,6 +34,7 @@ mod mode;
 mod moved_controls;
 mod navigate;
 mod number_entry;
+mod one_piece;
 mod other_side;
 mod outline;
 mod overlay;
