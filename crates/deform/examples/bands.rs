@@ -3,8 +3,8 @@
 //! The part that a mesh's file of roles (MESH.sel) frees is a limb from its fixed vertices to its handle. Bands of it
 //! beside the fixed part, in the middle and beside the handle are painted, and the handle turns by 60° about a point
 //! half-way: across the limb, then along it. Each line gives the mesh, the method, the turn, the band, and the band's
-//! departure from a rigid motion (root mean square, % of the free part's diagonal) and the volume (over that at rest)
-//! at each stiffness; at the end, the departures that do not fall with stiffness and the volumes that a stiffness raises
+//! departure from a rigid motion (root mean square, % of the free part's diagonal), the limb's volume and length (over
+//! those at rest), the turn between the band's ends in degrees and the steps at each stiffness; at the end, the departures that do not fall with stiffness and the volumes that a stiffness raises
 //! above both 1 and the unpainted volume.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
@@ -72,9 +72,11 @@ fn line(found: &[Bent]) -> String {
         }
     }
     format!(
-        "{} | {} | {}{faults}",
+        "{} | {} | {} | {} | {}{faults}",
         words(|bent| format!("{:.4}", bent.departure)),
         words(|bent| format!("{:.3}", bent.volume)),
+        words(|bent| format!("{:.3}", bent.length)),
+        words(|bent| format!("{:.1}", bent.turn)),
         words(|bent| bent.steps.to_string()),
     )
 }
@@ -83,6 +85,10 @@ fn line(found: &[Bent]) -> String {
 struct Bent {
     departure: f64,
     volume: f64,
+    /// The length of the limb over that at rest.
+    length: f64,
+    /// The turn between the band's ends, in degrees.
+    turn: f64,
     steps: u32,
 }
 
@@ -155,9 +161,9 @@ impl Limb {
     fn bent(&self, method: &Method, target: DAffine3, band: &std::ops::Range<f64>, stiffness: f64) -> Bent {
         let positions = &self.model.surface.positions;
         let is_in = |v: &usize| self.roles[*v] == Role::Free && band.contains(&self.shares[*v]);
-        let band: Vec<usize> = (0..positions.len()).filter(is_in).collect();
+        let members: Vec<usize> = (0..positions.len()).filter(is_in).collect();
         let mut painted = vec![1.0; positions.len()];
-        band.iter().for_each(|&v| painted[v] = stiffness);
+        members.iter().for_each(|&v| painted[v] = stiffness);
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let topology = &self.model.topology;
         let ordering = method.ordering(topology, &progress, &cancel).unwrap();
@@ -173,8 +179,8 @@ impl Limb {
             }
         }
         let moved: Vec<DVec3> = positions.iter().zip(&displacements).map(|(p, d)| *p + *d).collect();
-        let rest: Vec<DVec3> = band.iter().map(|&v| positions[v]).collect();
-        let of_band: Vec<DVec3> = band.iter().map(|&v| displacements[v]).collect();
+        let rest: Vec<DVec3> = members.iter().map(|&v| positions[v]).collect();
+        let of_band: Vec<DVec3> = members.iter().map(|&v| displacements[v]).collect();
         let fit = RigidMotion::fit(&rest, &of_band).unwrap();
         let apart = rest
             .iter()
@@ -184,8 +190,40 @@ impl Limb {
         Bent {
             departure: 100.0 * departure,
             volume: self.volume(&moved) / self.volume(positions),
+            length: self.length(&moved) / self.length(positions),
+            turn: self.turn(&displacements, band),
             steps,
         }
+    }
+
+    /// The length of the line through the middles of twelve slices of the limb.
+    fn length(&self, places: &[DVec3]) -> f64 {
+        let slice = |number: usize| -> DVec3 {
+            let range = number as f64 / 12.0..(number + 1) as f64 / 12.0;
+            let own: Vec<usize> = self.free().filter(|&v| range.contains(&self.shares[v])).collect();
+            own.iter().map(|&v| places[v]).sum::<DVec3>() / own.len().max(1) as f64
+        };
+        (1..12).map(|number| slice(number - 1).distance(slice(number))).sum()
+    }
+
+    /// The angle between the rigid motions that fit the first and the last fifth of a band best, in degrees.
+    fn turn(&self, displacements: &[DVec3], band: &std::ops::Range<f64>) -> f64 {
+        let fifth = 0.2 * (band.end - band.start);
+        let [first, last] = [band.start..band.start + fifth, band.end - fifth..band.end].map(|range| {
+            let own: Vec<usize> = self.free().filter(|&v| range.contains(&self.shares[v])).collect();
+            let of = |all: &[DVec3]| own.iter().map(|&v| all[v]).collect::<Vec<_>>();
+            RigidMotion::fit(&of(&self.model.surface.positions), &of(displacements)).unwrap()
+        });
+        let turned = |fit: &RigidMotion, axis: DVec3| axis + fit.displace(axis) - fit.displace(DVec3::ZERO);
+        let cosine: f64 = DVec3::AXES
+            .iter()
+            .map(|&axis| turned(&first, axis).dot(turned(&last, axis)))
+            .sum();
+        (0.5 * (cosine - 1.0)).clamp(-1.0, 1.0).acos().to_degrees()
+    }
+
+    fn free(&self) -> impl Iterator<Item = usize> {
+        (0..self.roles.len()).filter(|&v| self.roles[v] == Role::Free)
     }
 
     /// Six times the volume of the limb, closed at both rims by fans from their middles.
