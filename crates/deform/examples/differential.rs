@@ -2,7 +2,8 @@
 //!
 //! The edit is the one that peers are timed on, its target approached in sixty frames. One JSON object a method, the
 //! bi-Laplacian first; times are medians in milliseconds. A method's binding alternates with the bi-Laplacian's, so
-//! that their ratio compares runs close in time.
+//! that their ratio compares runs close in time. With `PLIANT_CPU` in the environment times are the processor's, summed
+//! over threads.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

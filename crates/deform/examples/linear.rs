@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use common::{median, ms, name, one_handle, peak_mb, peers_edit, pool, read, stroke};
+use common::{median, ms, name, one_handle, peak_mb, peers_edit, pool, processor_ms, read, stroke};
 use glam::{DVec3, Vec3A};
 use pliant_deform::stages::Operator;
 use pliant_deform::{Bilaplacian, Method, Ordering};
@@ -133,16 +133,6 @@ impl Watch {
 fn wall_ms() -> f64 {
     static FIRST: OnceLock<Instant> = OnceLock::new();
     ms(*FIRST.get_or_init(Instant::now))
-}
-
-/// Milliseconds that processors have spent on this process' threads.
-fn processor_ms() -> f64 {
-    let threads = std::fs::read_dir("/proc/self/task").unwrap();
-    let spent = |thread: std::io::Result<std::fs::DirEntry>| -> f64 {
-        let text = std::fs::read_to_string(thread.unwrap().path().join("schedstat")).unwrap();
-        text.split_whitespace().next().unwrap().parse().unwrap()
-    };
-    threads.map(spent).sum::<f64>() * 1e-6
 }
 
 /// The speed at which all threads together read memory in order, in GB/s.

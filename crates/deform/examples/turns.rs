@@ -7,10 +7,13 @@
 //! the number of steps, and whether a warning names the turn.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
+mod common;
+
 use std::collections::BTreeMap;
 
+use common::chosen_method;
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Method, OptionValue, Problem, Role};
+use pliant_deform::{Method, Problem, Role};
 use pliant_mesh::{Cancel, Progress, SurfaceVertex, shapes};
 
 const RADIUS: f64 = 0.5;
@@ -21,12 +24,7 @@ fn main() {
         "method neck degrees | twist: narrowest area flips steps energy said | bend: the same | drag's twist: narrowest energy"
     );
     for word in std::env::args().skip(1) {
-        let (name, options) = word.split_once(':').unwrap_or((&word, ""));
-        let mut method = Method::from_name(name).unwrap();
-        for option in options.split(',').filter(|option| !option.is_empty()) {
-            let (option, text) = option.split_once('=').unwrap();
-            method = method.with([(option, value(&method, option, text))]).unwrap();
-        }
+        let method = chosen_method(&word);
         for neck in [1.0, 0.6, 0.3, 0.2] {
             for degrees in [90.0, 120.0, 150.0, 170.0, 180.0] {
                 let twist = |share: f64| DAffine3::from_rotation_z((share * degrees).to_radians());
@@ -48,17 +46,6 @@ fn main() {
                 );
             }
         }
-    }
-}
-
-/// The value that a text gives for one of the method's options.
-fn value(method: &Method, option: &str, text: &str) -> OptionValue {
-    let own = method.value(option).unwrap();
-    match own {
-        OptionValue::Number(_) => OptionValue::Number(text.parse().unwrap()),
-        OptionValue::Whole(_) => OptionValue::Whole(text.parse().unwrap()),
-        OptionValue::Switch(_) => OptionValue::Switch(text.parse().unwrap()),
-        OptionValue::Name(_) => OptionValue::Name(text.to_owned().leak()),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::{Loose, Method, Problem, Role};
+use pliant_deform::{Loose, Method, OptionValue, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, Vectors, WeldOptions};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -44,6 +44,28 @@ pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64],
     Problem {
         loose: Loose::Rest,
         ..Problem::new((&model.surface, &model.topology), roles, stiffness, method)
+    }
+}
+
+/// The method that a word names: `METHOD[:OPTION=VALUE,..]`.
+pub fn chosen_method(word: &str) -> Method {
+    let (name, options) = word.split_once(':').unwrap_or((word, ""));
+    let mut method = Method::from_name(name).unwrap();
+    for option in options.split(',').filter(|option| !option.is_empty()) {
+        let (option, text) = option.split_once('=').unwrap();
+        method = method.with([(option, value(&method, option, text))]).unwrap();
+    }
+    method
+}
+
+/// The value that a text gives for one of the method's options.
+fn value(method: &Method, option: &str, text: &str) -> OptionValue {
+    let own = method.value(option).unwrap();
+    match own {
+        OptionValue::Number(_) => OptionValue::Number(text.parse().unwrap()),
+        OptionValue::Whole(_) => OptionValue::Whole(text.parse().unwrap()),
+        OptionValue::Switch(_) => OptionValue::Switch(text.parse().unwrap()),
+        OptionValue::Name(_) => OptionValue::Name(text.to_owned().leak()),
     }
 }
 
@@ -106,11 +128,26 @@ pub fn peers_edit(model: &Model) -> (Vec<Role>, DAffine3) {
     (roles, target)
 }
 
-/// The result of a function, and its time in milliseconds.
+/// The result of a function, and its time in milliseconds: the processor's if the environment has `PLIANT_CPU`.
 pub fn timed<T>(run: impl FnOnce() -> T) -> (f64, T) {
+    if std::env::var_os("PLIANT_CPU").is_some() {
+        let start = processor_ms();
+        let result = run();
+        return (processor_ms() - start, result);
+    }
     let start = Instant::now();
     let result = run();
     (ms(start), result)
+}
+
+/// Milliseconds that processors have spent on this process' threads.
+pub fn processor_ms() -> f64 {
+    let threads = std::fs::read_dir("/proc/self/task").unwrap();
+    let spent = |thread: std::io::Result<std::fs::DirEntry>| -> f64 {
+        let text = std::fs::read_to_string(thread.unwrap().path().join("schedstat")).unwrap();
+        text.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    threads.map(spent).sum::<f64>() * 1e-6
 }
 
 /// Milliseconds since `start`.

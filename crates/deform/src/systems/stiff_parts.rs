@@ -23,8 +23,55 @@ pub(crate) enum Guide {
     Handle(u16),
 }
 
-/// s₁ of each surface vertex.
-pub(crate) fn least_stiffness(operator: &BilaplacianOperator, problem: &BoundaryProblem) -> Vec<f64> {
+/// A level of stiffness above which connected vertices are parts.
+///
+/// There are two of them: parts above 1, and parts of ordinary stiffness that soft ones separate. Without the second, a
+/// soft band took none of a bend: the rest sheared instead. A part of the first kind may be inside one of the second, and
+/// adds its own excess to that.
+pub(crate) struct Level {
+    /// s₁ of each surface vertex.
+    least: Vec<f64>,
+    /// Stiffness above this belongs to the next level.
+    most: f64,
+}
+
+impl Level {
+    /// The level of parts above 1.
+    pub fn stiff(operator: &BilaplacianOperator, problem: &BoundaryProblem) -> Self {
+        let least = least_stiffness(operator, problem);
+        Self {
+            least: least.into_iter().map(|least| least.max(1.0)).collect(),
+            most: f64::INFINITY,
+        }
+    }
+
+    /// Both levels, or that of parts above 1 if nothing is soft.
+    pub fn all(operator: &BilaplacianOperator, problem: &BoundaryProblem) -> Vec<Self> {
+        let least = least_stiffness(operator, problem);
+        let ordinary = least.iter().any(|least| *least < 1.0).then(|| Self {
+            least: least.into_iter().map(|least| least.min(1.0)).collect(),
+            most: 1.0,
+        });
+        ordinary.into_iter().chain([Self::stiff(operator, problem)]).collect()
+    }
+
+    /// The stiffness of a vertex above the level's least; not above its most.
+    pub fn excess(&self, problem: &BoundaryProblem, vertex: u32) -> f64 {
+        (self.stiffness(problem, vertex) - self.least[vertex as usize]).max(0.0)
+    }
+
+    /// The excess as a share of the vertex' stiffness up to the level's most.
+    pub fn share(&self, problem: &BoundaryProblem, vertex: u32) -> f64 {
+        self.excess(problem, vertex) / self.stiffness(problem, vertex)
+    }
+
+    fn stiffness(&self, problem: &BoundaryProblem, vertex: u32) -> f64 {
+        problem.stiffness[vertex as usize].min(self.most)
+    }
+}
+
+/// The least stiffness of each surface vertex' component; infinite where nothing bends.
+fn least_stiffness(operator: &BilaplacianOperator, problem: &BoundaryProblem) -> Vec<f64> {
     let laplacian = &operator.laplacian;
     let mut of_component = vec![f64::INFINITY; problem.topology.components().len()];
     let component = |vertex: u32| problem.topology.component(SurfaceVertex(vertex)) as usize;
@@ -34,23 +81,24 @@ pub(crate) fn least_stiffness(operator: &BilaplacianOperator, problem: &Boundary
             *least = least.min(problem.stiffness[vertex as usize]);
         }
     }
-    let of = |vertex: usize| of_component[component(vertex as u32)].max(1.0);
-    (0..problem.stiffness.len()).map(of).collect()
+    (0..problem.stiffness.len() as u32)
+        .map(|vertex| of_component[component(vertex)])
+        .collect()
 }
 
-/// The parts that are stiffer than `least` and reach the bending part, the heaviest first, and their guides; parts
-/// between several guides are left out.
+/// The parts of a level that reach the bending part, the heaviest first, and their guides; parts between several guides
+/// are left out.
 pub(crate) fn stiff_components(
     operator: &BilaplacianOperator,
     triangulation: &Triangulation,
     problem: &BoundaryProblem,
-    least: &[f64],
+    level: &Level,
 ) -> Vec<(Vec<u32>, Guide)> {
-    let is_stiff = |vertex: usize| problem.stiffness[vertex] > least[vertex];
-    let mut is_seen = vec![false; least.len()];
+    let excess = |vertex: u32| level.excess(problem, vertex);
+    let mut is_seen = vec![false; problem.stiffness.len()];
     let mut parts: Vec<(f64, Vec<u32>, Guide)> = Vec::new();
     for &first in operator.laplacian.vertices() {
-        if is_seen[first as usize] || !is_stiff(first as usize) {
+        if is_seen[first as usize] || excess(first) <= 0.0 {
             continue;
         }
         is_seen[first as usize] = true;
@@ -64,12 +112,12 @@ pub(crate) fn stiff_components(
                 Role::Free | Role::Handle(_) => Guide::Free,
             };
             if guide == Guide::Free {
-                weight += problem.stiffness[vertex as usize] - least[vertex as usize];
+                weight += excess(vertex);
             } else if !guides.contains(&guide) {
                 guides.push(guide);
             }
             for other in triangulation.neighbours(SurfaceVertex(vertex)) {
-                if is_stiff(other.index()) && !std::mem::replace(&mut is_seen[other.index()], true) {
+                if excess(other.0) > 0.0 && !std::mem::replace(&mut is_seen[other.index()], true) {
                     part.push(other.0);
                 }
             }

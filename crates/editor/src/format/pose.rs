@@ -4,6 +4,7 @@
 //! joint is on another limb takes its part of that one, whichever comes first in the list, and the surface around its
 //! joint is free to bend.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -124,6 +125,7 @@ impl Limbs {
             model,
             paint: Arc::new(paint),
             handles,
+            twins: BTreeMap::new(),
             rest: None,
             is_of_file: false,
             tips: Tips::default(),

@@ -19,6 +19,7 @@ mod part;
 mod reach;
 mod rim;
 mod tips;
+mod twin_reach;
 
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -35,11 +36,12 @@ pub(crate) use self::limb_joint::limb_joint;
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
 use self::part::end_of_part;
-pub(crate) use self::reach::centroid;
-use self::reach::{handle_radius, most_of};
+use self::reach::most_of;
+pub(crate) use self::reach::{centroid, handle_radius};
 pub use self::rim::Rim;
 pub(crate) use self::rim::bounded;
 use self::tips::free_tips;
+use self::twin_reach::TwinReach;
 use crate::document::{Access, Document, HandleId, PART_RADII, Paint, Reach, Tips};
 use crate::region::rim::rims;
 
@@ -49,6 +51,8 @@ pub(crate) struct RegionInput<M = Arc<Model>> {
     pub(crate) model: M,
     pub(crate) paint: Arc<Vec<Paint>>,
     pub(crate) handles: Vec<(HandleId, Reach)>,
+    /// The first handle of each second one of twins.
+    pub(crate) twins: BTreeMap<HandleId, HandleId>,
     /// The rest shape's displacements from the file's; `None` if it is the file's.
     pub(crate) rest: Option<Arc<Vec<DVec3>>>,
     /// True if the region is that of the file's shape, whatever the rest shape is: it holds for all frames of a sequence.
@@ -157,6 +161,7 @@ impl Region {
         let (mut search, mut creases) = (DistanceSearch::default(), CreaseSearch::default());
         let mut distances = Vec::new();
         let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let mut twin_reach = TwinReach::new(surface, topology, &input.twins);
         // Per component: whether it is wholly in some handle's ball.
         let (mut within, mut within_this) = (vec![false; painted.len()], vec![true; painted.len()]);
         for ((id, reach), members) in input.handles.iter().zip(&members) {
@@ -188,6 +193,7 @@ impl Region {
                     let radius = most / PART_RADII;
                     limit = end_of_part(surface, topology, reached, &mut distances, radius, most);
                 }
+                limit = twin_reach.limit((*id, *reach), members, reached, limit);
                 for (vertex, _) in reached.iter().take_while(|(_, distance)| *distance <= limit) {
                     roles[vertex.index()] = Role::Free;
                 }
@@ -320,6 +326,12 @@ pub(crate) fn region_input<M>(model: M, document: &Document, contacts: &FileCont
             .handles
             .iter()
             .map(|handle| (handle.id, handle.reach))
+            .collect(),
+        twins: document
+            .handles
+            .iter()
+            .filter_map(|handle| Some((handle.id, handle.twin?.handle)))
+            .filter(|(second, first)| first < second)
             .collect(),
         rest: document.applied.then(|| Arc::clone(&document.rest)),
         is_of_file: document.animation.frames().is_some(),

@@ -21,7 +21,7 @@ pub(super) fn most_of(reach: Reach, surface: &Surface, topology: &Topology, memb
 ///
 /// Farthest distances or moments would be equally good for one round patch, but a handle of two patches far apart would
 /// then reach across everything between them.
-pub(super) fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+pub(crate) fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     let area_of = |face: u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
     let area: f64 = members
         .iter()

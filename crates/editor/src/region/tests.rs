@@ -1,5 +1,6 @@
 //! Laws of the region.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -21,6 +22,7 @@ pub(super) fn painted_input(
         paint: Arc::new(model.surface.positions.iter().map(paint).collect()),
         model: Arc::new(model),
         handles: handles.iter().map(|id| (*id, reach)).collect(),
+        twins: BTreeMap::new(),
         rest: None,
         is_of_file: false,
         tips: Tips::ComeAlong,
@@ -129,6 +131,7 @@ fn cut_at(drawn: Drawn, at: f64) -> (RegionInput, Vec<f64>) {
         paint: Arc::new(shares.iter().map(paint).collect()),
         model: Arc::new(model),
         handles: vec![(HandleId(0), Reach::Length(0.1 * extent[axis]))],
+        twins: BTreeMap::new(),
         rest: None,
         is_of_file: false,
         tips: Tips::ComeAlong,

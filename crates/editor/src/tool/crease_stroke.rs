@@ -6,40 +6,33 @@ use pliant_mesh::{SurfaceVertex, feature_line};
 
 use super::context::Context;
 use super::drawn_path::{DrawnPath, STEP_PX};
-use super::gesture::{Gesture, Next};
-use super::overlay::Lit;
-use super::paint::PaintStroke;
-use super::stroke::StrokeGesture;
+use super::sought_stroke::{Drawing, Outcome, SoughtStroke};
 use crate::crease;
 use crate::document::{Crease, HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
-use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, Enclosed};
+use crate::input::Pointer;
+use crate::jobs::Enclosed;
 use crate::region::displaced;
-use crate::view::{Cursor, View};
+use crate::view::View;
 use crate::workspace::Workspace;
 
 /// A stroke during its drawing.
 #[derive(Debug)]
 pub(crate) struct CreaseStroke {
     path: DrawnPath,
-    /// The stroke that finally paints the vertices.
-    stroke: StrokeGesture<PaintStroke>,
     radius_px: f64,
     /// The width of the crease in world units, while a job searches for its line.
     width: Option<f64>,
 }
 
 impl CreaseStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
-        context.workspace.selection.wants_new_handle = true;
-        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
-        Some(Self {
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<SoughtStroke<Self>> {
+        let drawing = Self {
             path: DrawnPath::begin(pointer, STEP_PX),
-            stroke,
             radius_px: context.settings.brush().radius_px,
             width: None,
-        })
+        };
+        SoughtStroke::of_new_handle(context, pointer, drawing)
     }
 
     /// The vertices under the stroke, and the radius of the brush in world units where the surface is nearest.
@@ -56,12 +49,6 @@ impl CreaseStroke {
         (!vertices.is_empty()).then_some((vertices, width))
     }
 
-    fn refuse(&mut self, context: &mut Context<'_>, why: &str) -> Next {
-        self.abort(context);
-        context.workspace.refuse(why);
-        Next::End
-    }
-
     /// The curve along a line of vertices.
     fn curve(&self, line: &[DVec3], width: f64) -> Option<HandleCurve> {
         let points = evenly(line, self.path.point_count(), self.path.is_closed());
@@ -70,20 +57,8 @@ impl CreaseStroke {
     }
 }
 
-impl Gesture for CreaseStroke {
-    fn activity(&self) -> Activity {
-        self.stroke.activity()
-    }
-
-    fn cursor(&self) -> Cursor {
-        self.stroke.cursor()
-    }
-
-    fn lit(&self) -> Lit {
-        self.stroke.lit()
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+impl Drawing for CreaseStroke {
+    fn status(&self) -> Option<String> {
         Some(match self.width {
             None => {
                 "Drawing along a crease or a border: release at its end, or at its start to close it, Esc to cancel"
@@ -105,21 +80,14 @@ impl Gesture for CreaseStroke {
         true
     }
 
-    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        if self.width.is_none() {
-            self.path.follow(pointer);
-        }
-        Next::Stay
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) {
+        self.path.follow(pointer);
     }
 
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary || self.is_looking() {
-            return Next::Stay;
-        }
-        self.moved(context, pointer);
+    fn released(&mut self, context: &mut Context<'_>) -> Outcome {
         let under = self.under(context.workspace, context.view);
         let (Some((stroke, width)), Some(model)) = (under, context.workspace.model().cloned()) else {
-            return self.refuse(context, "There is no surface under the line: draw it along a crease.");
+            return Outcome::Refuses("There is no surface under the line: draw it along a crease.");
         };
         let displacements = context.workspace.document.from_file().clone();
         let is_closed = self.path.is_closed();
@@ -131,18 +99,19 @@ impl Gesture for CreaseStroke {
         });
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.width = Some(width);
-        Next::Stay
+        Outcome::Looks
     }
 
-    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Next {
+    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Outcome {
         let workspace = &*context.workspace;
         let line = found.vertices;
         let places: Vec<DVec3> = line.iter().map(|&vertex| workspace.position(vertex)).collect();
         let width = self.width.take();
         let curve = width.and_then(|width| self.curve(&places, width));
         let (Some(width), Some(curve), Some(model)) = (width, curve, workspace.model()) else {
-            let why = "There is no crease or border along the line: draw nearer to one, or make the brush larger.";
-            return self.refuse(context, why);
+            return Outcome::Refuses(
+                "There is no crease or border along the line: draw nearer to one, or make the brush larger.",
+            );
         };
         let position = |vertex| workspace.position(vertex);
         let line = line.into_iter();
@@ -150,14 +119,8 @@ impl Gesture for CreaseStroke {
         let vertices = vertices.into_iter();
         let is_open = |vertex: &SurfaceVertex| workspace.vertex_access.may_be_painted(vertex.index());
         let vertices: Vec<SurfaceVertex> = vertices.filter(is_open).collect();
-        self.stroke.finish_with(context.workspace, |stroke, workspace| {
+        Outcome::Ends(Box::new(move |stroke, workspace| {
             stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), Reach::Length(width));
-        });
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
-        self.stroke.abort(context);
+        }))
     }
 }

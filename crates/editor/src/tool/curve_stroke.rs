@@ -9,19 +9,16 @@ use pliant_mesh::{Curve, SurfaceVertex, triangles_under};
 
 use super::context::Context;
 use super::drawn_path::{DrawnPath, STEP_PX};
-use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
-use super::overlay::Lit;
-use super::paint::PaintStroke;
+use super::sought_stroke::{Drawing, Outcome, SoughtStroke};
 use super::spine::{Sample, around, to_the_middle};
-use super::stroke::StrokeGesture;
 use super::stroke_part::on_one_part;
 use super::uncut_reach::uncut_reach;
 use crate::document::{HandleCurve, HandleLine, Reach};
 use crate::evenly::evenly;
-use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, Enclosed};
-use crate::view::{Cursor, Picking, View};
+use crate::input::Pointer;
+use crate::jobs::Enclosed;
+use crate::view::{Picking, View};
 use crate::workspace::Workspace;
 
 const SPINE_POINTS: usize = 5;
@@ -36,11 +33,12 @@ const CURVE_REACH: f64 = 0.4;
 pub(crate) struct CurveStroke {
     shape: StrokeShape,
     path: DrawnPath,
-    /// The stroke that finally paints the vertices.
-    stroke: StrokeGesture<PaintStroke>,
     /// The drawn spine, while a job searches for the limb around it.
     spine: Option<HandleCurve>,
 }
+
+/// The message if a stroke is too short for a curve.
+const TOO_SHORT: &str = "That is too short for a curve: draw a longer one along the surface.";
 
 /// What follows a curve.
 enum Around {
@@ -51,15 +49,13 @@ enum Around {
 }
 
 impl CurveStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
-        context.workspace.selection.wants_new_handle = true;
-        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
-        Some(Self {
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<SoughtStroke<Self>> {
+        let drawing = Self {
             shape,
             path: DrawnPath::begin(pointer, STEP_PX),
-            stroke,
             spine: None,
-        })
+        };
+        SoughtStroke::of_new_handle(context, pointer, drawing)
     }
 
     /// The samples on the surface, evenly along the stroke.
@@ -112,27 +108,13 @@ impl CurveStroke {
         workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.spine = Some(drawn);
     }
+}
 
-    /// Makes a handle of these vertices that follows the curve.
-    fn finish(
-        &mut self,
-        context: &mut Context<'_>,
-        curve: HandleCurve,
-        vertices: Vec<SurfaceVertex>,
-        reach: Reach,
-    ) -> Next {
-        self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), reach);
-        });
-        Next::End
-    }
-
-    fn refuse(&mut self, context: &mut Context<'_>) -> Next {
-        self.abort(context);
-        let why = "That is too short for a curve: draw a longer one along the surface.";
-        context.workspace.refuse(why);
-        Next::End
-    }
+/// A handle of these vertices that follows the curve.
+fn handle(curve: HandleCurve, vertices: Vec<SurfaceVertex>, reach: Reach) -> Outcome {
+    Outcome::Ends(Box::new(move |stroke, workspace| {
+        stroke.take_with_line(workspace, vertices, HandleLine::Curve(curve), reach);
+    }))
 }
 
 /// The corners of the triangles under a curve on the surface.
@@ -148,20 +130,8 @@ fn under(curve: &Curve, samples: &[Sample], picking: &Picking<'_>) -> Vec<Surfac
     vertices.into_iter().collect()
 }
 
-impl Gesture for CurveStroke {
-    fn activity(&self) -> Activity {
-        self.stroke.activity()
-    }
-
-    fn cursor(&self) -> Cursor {
-        self.stroke.cursor()
-    }
-
-    fn lit(&self) -> Lit {
-        self.stroke.lit()
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+impl Drawing for CurveStroke {
+    fn status(&self) -> Option<String> {
         Some(match self.shape {
             StrokeShape::Spine if self.spine.is_some() => "Finding the limb around the spine: Esc to cancel".to_owned(),
             StrokeShape::Spine => {
@@ -180,42 +150,28 @@ impl Gesture for CurveStroke {
         self.spine.is_some()
     }
 
-    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        if !self.is_looking() {
-            self.path.follow(pointer);
-        }
-        Next::Stay
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) {
+        self.path.follow(pointer);
     }
 
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary || self.is_looking() {
-            return Next::Stay;
-        }
-        self.moved(context, pointer);
+    fn released(&mut self, context: &mut Context<'_>) -> Outcome {
         match self.drawn(context.workspace, context.view) {
             Some((curve, Around::Under(vertices))) => {
                 let reach = Reach::Length(CURVE_REACH * curve.rest().length());
-                self.finish(context, curve, vertices, reach)
+                handle(curve, vertices, reach)
             }
             Some((curve, Around::Limb(half, seen))) => {
                 self.look_around(context.workspace, curve, half, seen);
-                Next::Stay
+                Outcome::Looks
             }
-            None => self.refuse(context),
+            None => Outcome::Refuses(TOO_SHORT),
         }
     }
 
-    fn found(&mut self, context: &mut Context<'_>, limb: Enclosed) -> Next {
+    fn found(&mut self, _: &mut Context<'_>, limb: Enclosed) -> Outcome {
         match self.spine.take().zip(limb.reach) {
-            Some((curve, reach)) if !limb.vertices.is_empty() => {
-                self.finish(context, curve, limb.vertices, Reach::Bounded(reach))
-            }
-            _ => self.refuse(context),
+            Some((curve, reach)) if !limb.vertices.is_empty() => handle(curve, limb.vertices, Reach::Bounded(reach)),
+            _ => Outcome::Refuses(TOO_SHORT),
         }
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
-        self.stroke.abort(context);
     }
 }

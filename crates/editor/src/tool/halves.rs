@@ -14,6 +14,9 @@ use crate::jobs::BothSides;
 /// this share if the plane is 0.63 of its radius from its middle.
 const ONE_SHARE: f64 = 0.25;
 
+/// With at least this share the given vertices alone are on both sides, as all around a limb.
+const BOTH_SHARE: f64 = 0.5;
+
 /// A twin has at least this share of its handle's number of vertices; fewer are scraps on a side that lacks the part.
 const LEAST_TWIN: f64 = 0.25;
 
@@ -113,6 +116,16 @@ impl Halves {
             position(other).distance(image) <= longest.fold(0.0, f64::max)
         };
         !self.is_given[vertex.index()] && !self.sides.opposite([vertex]).any(is_exact)
+    }
+
+    /// Whether a vertex was given, and not only as an image.
+    pub(super) fn is_given(&self, vertex: SurfaceVertex) -> bool {
+        self.is_given[vertex.index()]
+    }
+
+    /// Whether the given vertices alone are on both sides.
+    pub(super) fn are_both_sides(&self) -> bool {
+        self.shared_count as f64 >= BOTH_SHARE * self.given.len() as f64
     }
 
     /// All vertices that it was given.
@@ -254,6 +267,20 @@ mod tests {
         assert_eq!(from_limb.state(), from_middle.state());
         assert_eq!(from_limb.around(&limb), from_middle.around(&limb));
         assert_eq!(from_limb.give(&limb), []);
+    }
+
+    #[test]
+    fn a_band_around_the_middle_is_on_both_sides_by_itself_and_a_patch_beside_it_is_not() {
+        let (model, hanging) = legs([0.0, 0.4]);
+        let given = |is_given: &dyn Fn(DVec3) -> bool| {
+            let mut halves = nothing_on(&model);
+            halves.give(&where_hanging(&hanging, is_given));
+            halves
+        };
+        let band = given(&|p| p.x.abs() < 1.0 && p.y > -0.5);
+        assert!(band.state() == State::One && band.are_both_sides());
+        let patch = given(&|p| (-1.0..0.2).contains(&p.x) && p.y > -0.5);
+        assert!(patch.state() == State::One && !patch.are_both_sides());
     }
 
     #[test]

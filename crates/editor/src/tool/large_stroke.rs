@@ -13,13 +13,11 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 use super::brush::{Brush, BrushMetric, BrushSize};
 use super::context::Context;
 use super::drawn_shape::DrawnShape;
-use super::gesture::{Gesture, Next};
-use super::overlay::Lit;
 use super::paint::PaintStroke;
+use super::sought_stroke::{Change, Drawing, Outcome, SoughtStroke};
 use super::stroke::StrokeGesture;
-use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, Enclosed};
-use crate::view::{Cursor, View};
+use crate::input::Pointer;
+use crate::jobs::Enclosed;
 use crate::workspace::Workspace;
 
 /// The number of vertices from which on a surface is large.
@@ -31,7 +29,6 @@ const PIECE: f64 = 0.25;
 /// A stroke on a large surface.
 #[derive(Debug)]
 pub(super) struct LargeStroke {
-    stroke: StrokeGesture<PaintStroke>,
     /// Complete pieces that wait for the job of the one before.
     pieces: VecDeque<Piece>,
     /// The piece that grows, from the last one's end on.
@@ -52,16 +49,19 @@ impl LargeStroke {
     }
 
     /// Begins a stroke with a first piece under the pointer.
-    pub(super) fn begin(context: &mut Context<'_>, stroke: StrokeGesture<PaintStroke>, pointer: Pointer) -> Self {
+    pub(super) fn begin(
+        context: &mut Context<'_>,
+        stroke: StrokeGesture<PaintStroke>,
+        pointer: Pointer,
+    ) -> SoughtStroke<Self> {
         let mut own = Self {
-            stroke,
             pieces: VecDeque::new(),
             way_px: vec![pointer.position_px; 2],
             is_searching: false,
             is_released: false,
         };
         own.end_piece(context);
-        own
+        SoughtStroke::new(stroke, own)
     }
 
     /// Completes the piece that grows.
@@ -87,73 +87,49 @@ impl LargeStroke {
         }
     }
 
-    /// Ends if nothing is left to be found.
-    fn end(&mut self, workspace: &mut Workspace) -> Next {
-        if !self.is_released || self.is_searching {
-            return Next::Stay;
+    /// Paints, and ends if nothing is left to be found.
+    fn painting(&self, change: Change) -> Outcome {
+        match self.is_released && !self.is_searching {
+            true => Outcome::Ends(change),
+            false => Outcome::Paints(change),
         }
-        self.stroke.finish_with(workspace, |_, _| {});
-        Next::End
     }
 }
 
-impl Gesture for LargeStroke {
-    fn activity(&self) -> Activity {
-        self.stroke.activity()
-    }
-
-    fn cursor(&self) -> Cursor {
-        self.stroke.cursor()
-    }
-
-    fn lit(&self) -> Lit {
-        self.stroke.lit()
-    }
-
-    fn status(&self, workspace: &Workspace, view: &View) -> Option<String> {
-        self.stroke.status(workspace, view)
+impl Drawing for LargeStroke {
+    fn status(&self) -> Option<String> {
+        None
     }
 
     fn is_looking(&self) -> bool {
         self.is_released
     }
 
-    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
-        if self.is_released || self.way_px.last() == Some(&pointer.position_px) {
-            return Next::Stay;
+    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) {
+        if self.way_px.last() == Some(&pointer.position_px) {
+            return;
         }
         self.way_px.push(pointer.position_px);
         let lengths = self.way_px.windows(2).map(|ends| ends[0].distance(ends[1]));
         if lengths.sum::<f64>() >= PIECE * context.settings.brush().radius_px {
             self.end_piece(context);
         }
-        Next::Stay
     }
 
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary || self.is_released {
-            return Next::Stay;
-        }
-        self.moved(context, pointer);
+    fn released(&mut self, context: &mut Context<'_>) -> Outcome {
         if self.way_px.len() > 1 {
             self.end_piece(context);
         }
         self.is_released = true;
-        self.end(context.workspace)
+        self.painting(Box::new(|_, _| {}))
     }
 
-    fn found(&mut self, context: &mut Context<'_>, under: Enclosed) -> Next {
-        self.stroke.go_on_with(context.workspace, |stroke, workspace| {
-            stroke.take_new(workspace, under.vertices);
-        });
+    fn found(&mut self, context: &mut Context<'_>, under: Enclosed) -> Outcome {
         self.is_searching = false;
         self.search(context.workspace);
-        self.end(context.workspace)
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
-        self.stroke.abort(context);
+        self.painting(Box::new(move |stroke, workspace| {
+            stroke.take_new(workspace, under.vertices)
+        }))
     }
 }
 

@@ -8,10 +8,15 @@ use std::sync::Arc;
 use pliant_mesh::SurfaceVertex;
 
 use super::halves::{Half, Halves, NO_TWIN, State, is_twin};
+use super::one_piece::{in_pieces, pieces};
 use super::smooth_image::smooth_image;
 use crate::document::{Document, HandleId, Paint, link_twins};
 use crate::jobs::BothSides;
+use crate::region::handle_radius;
 use crate::workspace::{Workspace, members};
+
+/// The shape is not its own mirror image where more than this share of the places on the other side are uncertain.
+const UNCERTAIN: f64 = 0.25;
 
 /// The other side of an active stroke.
 #[derive(Debug)]
@@ -112,7 +117,25 @@ impl OtherSide {
         first != 0.0 && beyond.all(|other| other * first > 0.0)
     }
 
-    /// Smooths the rim of what was painted on the other side, where that is off by some edges.
+    /// Takes what was painted on the other side off again, if the handle is all around a limb without it, and the shape is
+    /// not its own mirror image there: it would only add rags.
+    pub(super) fn drop_uncertain(&self, workspace: &mut Workspace, own: Paint, before: &Document) {
+        let (Paint::Handle(id), Some(halves)) = (own, &self.halves) else {
+            return;
+        };
+        let mut images = members(&workspace.document, id);
+        images.retain(|vertex| !halves.is_given(*vertex));
+        let uncertain = images.iter().filter(|vertex| halves.is_uncertain(**vertex)).count();
+        let is_wrong = uncertain as f64 > UNCERTAIN * images.len() as f64;
+        if halves.state() == State::One && halves.are_both_sides() && is_wrong {
+            let dropped = images.into_iter().map(|vertex| (vertex, former(before, vertex)));
+            let dropped: Vec<(SurfaceVertex, Paint)> = dropped.collect();
+            workspace.document.paint_vertices(dropped);
+        }
+    }
+
+    /// Smooths the rim of what was painted on the other side, where that is off by some edges, and closes the gaps
+    /// between its pieces.
     pub(super) fn smooth(&self, workspace: &mut Workspace, own: Paint, before: &Document) {
         let (Paint::Handle(id), Some(halves), Some(model)) = (own, &self.halves, workspace.model().cloned()) else {
             return;
@@ -129,7 +152,20 @@ impl OtherSide {
             !is_another && halves.is_uncertain(vertex) && workspace.vertex_access.may_be_painted(vertex.index())
         };
         let vertices = members(&workspace.document, image);
-        let changed = smooth_image(&model.topology, &vertices, is_in, may_change);
+        let mut changed = smooth_image(&model.topology, &vertices, is_in, may_change);
+        if image != id {
+            let mut smooth: Vec<SurfaceVertex> = vertices;
+            smooth.retain(|vertex| changed.get(vertex) != Some(&false));
+            smooth.extend(
+                changed
+                    .iter()
+                    .filter(|(_, is_inside)| **is_inside)
+                    .map(|(vertex, _)| *vertex),
+            );
+            let count = pieces(&model, &members(&workspace.document, id)).len();
+            let radius = handle_radius(&model.surface, &model.topology, &smooth);
+            changed.extend(in_pieces(&model, &smooth, count, radius, may_change));
+        }
         let painted = changed.into_iter().map(|(vertex, is_inside)| match is_inside {
             true => (vertex, Paint::Handle(image)),
             false => (vertex, former(before, vertex)),

@@ -4,15 +4,11 @@ use glam::DVec2;
 
 use super::context::Context;
 use super::enclosed::Search;
-use super::gesture::{Gesture, Next};
 use super::mode::StrokeShape;
-use super::overlay::Lit;
 use super::paint::PaintStroke;
-use super::stroke::StrokeGesture;
-use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, Enclosed};
-use crate::view::{Cursor, View};
-use crate::workspace::Workspace;
+use super::sought_stroke::{Drawing, Outcome, SoughtStroke};
+use crate::input::Pointer;
+use crate::jobs::Enclosed;
 
 /// An outline during its drawing.
 #[derive(Debug)]
@@ -20,8 +16,6 @@ pub(crate) struct OutlineStroke {
     shape: StrokeShape,
     /// Corners in points of the view.
     points_px: Vec<DVec2>,
-    /// The stroke that finally paints the vertices.
-    stroke: StrokeGesture<PaintStroke>,
     phase: Phase,
 }
 
@@ -34,31 +28,19 @@ enum Phase {
 }
 
 impl OutlineStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<SoughtStroke<Self>> {
         let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
-        Some(Self {
+        let drawing = Self {
             shape,
             points_px: vec![pointer.position_px],
-            stroke,
             phase: Phase::Drawing,
-        })
+        };
+        Some(SoughtStroke::new(stroke, drawing))
     }
 }
 
-impl Gesture for OutlineStroke {
-    fn activity(&self) -> Activity {
-        self.stroke.activity()
-    }
-
-    fn cursor(&self) -> Cursor {
-        self.stroke.cursor()
-    }
-
-    fn lit(&self) -> Lit {
-        self.stroke.lit()
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+impl Drawing for OutlineStroke {
+    fn status(&self) -> Option<String> {
         let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
         Some(match self.phase {
             Phase::Drawing => format!("Drawing a {shape}: release to paint everything inside, Esc to cancel"),
@@ -77,23 +59,18 @@ impl Gesture for OutlineStroke {
         self.phase == Phase::Looking
     }
 
-    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) {
         // Not every pixel is a corner.
         let is_far = |last: &DVec2| last.distance(pointer.position_px) >= 2.0;
-        if self.phase == Phase::Drawing && self.points_px.last().is_none_or(is_far) {
+        if self.points_px.last().is_none_or(is_far) {
             if self.shape == StrokeShape::Box {
                 self.points_px.truncate(1);
             }
             self.points_px.push(pointer.position_px);
         }
-        Next::Stay
     }
 
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary || self.is_looking() {
-            return Next::Stay;
-        }
-        self.moved(context, pointer);
+    fn released(&mut self, context: &mut Context<'_>) -> Outcome {
         let (outline_px, depth) = (self.outline_px(), context.settings.depth);
         let Some(search) = Search::of(context.workspace, context.view, &outline_px, depth) else {
             return self.found(context, Enclosed::default());
@@ -101,18 +78,12 @@ impl Gesture for OutlineStroke {
         let work = Box::new(move |progress: &_, cancel: &_| Ok(search.run(progress, cancel)?.into()));
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.phase = Phase::Looking;
-        Next::Stay
+        Outcome::Looks
     }
 
-    fn found(&mut self, context: &mut Context<'_>, inside: Enclosed) -> Next {
-        self.stroke.finish_with(context.workspace, |stroke, workspace| {
-            stroke.take(workspace, inside.vertices);
-        });
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
-        self.stroke.abort(context);
+    fn found(&mut self, _: &mut Context<'_>, inside: Enclosed) -> Outcome {
+        Outcome::Ends(Box::new(move |stroke, workspace| {
+            stroke.take(workspace, inside.vertices)
+        }))
     }
 }

@@ -132,6 +132,7 @@ impl Stroke for PaintStroke {
 
     fn finish(&mut self, workspace: &mut Workspace, before: &Document) {
         if let Some(other_side) = &self.other_side {
+            other_side.drop_uncertain(workspace, self.paint, before);
             other_side.smooth(workspace, self.paint, before);
             other_side.drop_scraps(workspace, self.paint, before);
         }

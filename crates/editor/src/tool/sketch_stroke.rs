@@ -5,17 +5,13 @@ use pliant_mesh::{SurfaceVertex, bounding_box};
 
 use super::context::Context;
 use super::drawn_path::DrawnPath;
-use super::gesture::{Gesture, Next};
-use super::overlay::Lit;
-use super::paint::PaintStroke;
-use super::stroke::StrokeGesture;
+use super::sought_stroke::{Drawing, Outcome, SoughtStroke};
 use crate::document::{HandleLine, HandleSketch, Reach};
-use crate::input::{Button, Pointer};
-use crate::jobs::{Activity, Enclosed};
+use crate::input::Pointer;
+use crate::jobs::Enclosed;
 use crate::outline;
 use crate::region::displaced;
-use crate::view::{Cursor, View};
-use crate::workspace::Workspace;
+use crate::view::View;
 
 /// The distance between two points of the line, in points of the view.
 const STEP_PX: f64 = 4.0;
@@ -30,21 +26,14 @@ const REACH: f64 = 0.5;
 #[derive(Debug)]
 pub(crate) struct SketchStroke {
     path: DrawnPath,
-    /// The stroke that finally paints the outline.
-    stroke: StrokeGesture<PaintStroke>,
     /// The line, while a job searches for the outline that it means.
     sketch: Option<HandleSketch>,
 }
 
 impl SketchStroke {
-    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
-        context.workspace.selection.wants_new_handle = true;
-        let stroke = PaintStroke::begin(context.workspace, context.settings, pointer)?;
-        Some(Self {
-            path: DrawnPath::begin(pointer, STEP_PX),
-            stroke,
-            sketch: None,
-        })
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<SoughtStroke<Self>> {
+        let path = DrawnPath::begin(pointer, STEP_PX);
+        SoughtStroke::of_new_handle(context, pointer, Self { path, sketch: None })
     }
 
     /// The line in the present view.
@@ -56,28 +45,10 @@ impl SketchStroke {
         });
         HandleSketch::new(view.camera().clip_from_world(size_px), line.collect(), 1.0)
     }
-
-    fn refuse(&mut self, context: &mut Context<'_>, why: &str) -> Next {
-        self.abort(context);
-        context.workspace.refuse(why);
-        Next::End
-    }
 }
 
-impl Gesture for SketchStroke {
-    fn activity(&self) -> Activity {
-        self.stroke.activity()
-    }
-
-    fn cursor(&self) -> Cursor {
-        self.stroke.cursor()
-    }
-
-    fn lit(&self) -> Lit {
-        self.stroke.lit()
-    }
-
-    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+impl Drawing for SketchStroke {
+    fn status(&self) -> Option<String> {
         Some(match self.sketch {
             None => "Drawing the new outline beside the old one: release at its end, Esc to cancel".to_owned(),
             Some(_) => "Finding the outline that the line means: Esc to cancel".to_owned(),
@@ -96,21 +67,15 @@ impl Gesture for SketchStroke {
         true
     }
 
-    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
-        if self.sketch.is_none() {
-            self.path.follow(pointer);
-        }
-        Next::Stay
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) {
+        self.path.follow(pointer);
     }
 
-    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
-        if button != Button::Primary || self.is_looking() {
-            return Next::Stay;
-        }
-        self.moved(context, pointer);
+    fn released(&mut self, context: &mut Context<'_>) -> Outcome {
         let (Ok(sketch), Some(model)) = (self.drawn(context.view), context.workspace.model().cloned()) else {
-            let why = "That is too short for an outline: draw a longer line beside the one that you see.";
-            return self.refuse(context, why);
+            return Outcome::Refuses(
+                "That is too short for an outline: draw a longer line beside the one that you see.",
+            );
         };
         let displacements = context.workspace.document.from_file().clone();
         let access = &context.workspace.vertex_access;
@@ -135,28 +100,23 @@ impl Gesture for SketchStroke {
         });
         context.workspace.jobs.ask(|slots| &mut slots.enclose, work);
         self.sketch = Some(sketch);
-        Next::Stay
+        Outcome::Looks
     }
 
-    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Next {
+    fn found(&mut self, context: &mut Context<'_>, found: Enclosed) -> Outcome {
         let outline = found.vertices;
         let Some(sketch) = self.sketch.take().filter(|_| !outline.is_empty()) else {
-            let why = "The line leads from no outline to none: begin and end it at the edge of the model that you see.";
-            return self.refuse(context, why);
+            return Outcome::Refuses(
+                "The line leads from no outline to none: begin and end it at the edge of the model that you see.",
+            );
         };
         let positions: Vec<DVec3> = outline
             .iter()
             .map(|&vertex| context.workspace.position(vertex))
             .collect();
         let reach = REACH * bounding_box(&positions).map_or(0.0, |bounds| bounds.diagonal());
-        self.stroke.finish_with(context.workspace, |stroke, workspace| {
+        Outcome::Ends(Box::new(move |stroke, workspace| {
             stroke.take_with_line(workspace, outline, HandleLine::Sketch(sketch), Reach::Length(reach));
-        });
-        Next::End
-    }
-
-    fn abort(&mut self, context: &mut Context<'_>) {
-        context.workspace.jobs.stop_asking(|slots| &mut slots.enclose);
-        self.stroke.abort(context);
+        }))
     }
 }

@@ -1,8 +1,8 @@
 //! Stiff parts: a part painted stiffer than its surroundings keeps its shape while it turns with them.
 //!
 //! A linear method turns nothing: a part that resists ∇²d alone would keep its direction in space and shear. So each
-//! connected part C of stiffness above s₁, the larger of 1 and its component's least, has its own motion T_C, and the
-//! excess over s₁ resists departures from it, u = d − (T_C − I) p:
+//! connected part C of stiffness above s₁ ([`Level`]) has its own motion T_C, and the excess over s₁ resists departures,
+//! u = d − (T_C − I) p:
 //!
 //! ½ k_b ∫ (s − s₁) (|∇²u|² + q⁴ |u|²), q = min(2 κ, π / r),
 //!
@@ -24,7 +24,7 @@ use crate::region::boundary_problem::BoundaryProblem;
 use crate::systems::natural::NaturalTerm;
 use crate::systems::operator::BilaplacianOperator;
 use crate::systems::setup::Prescribed;
-use crate::systems::stiff_parts::{Guide, hang, least_stiffness, stiff_components};
+use crate::systems::stiff_parts::{Guide, Level, hang, stiff_components};
 use pliant_mesh::SurfaceVertex;
 
 /// A part that bends by less than this over its radius is flat: no motion of it bends the surface, so it needs none.
@@ -65,25 +65,30 @@ pub(crate) struct StiffParts {
 }
 
 impl StiffParts {
-    /// Adds the parts of the components that `may_turn` to the operator; returns their places and coordinates.
+    /// Adds these levels' parts of the components that `may_turn` to the operator; returns their places and coordinates.
     pub fn attach(
         operator: &mut BilaplacianOperator,
         triangulation: &Triangulation,
         problem: &BoundaryProblem,
         handles: &[Handle],
+        levels: &[Level],
         may_turn: impl Fn(u32) -> bool,
     ) -> (Self, Vec<Prescribed>) {
         let (mut parts, mut prescribed) = (Self::default(), Vec::new());
-        let least = least_stiffness(operator, problem);
         if handles.is_empty() {
             return (parts, prescribed);
         }
-        for (vertices, guide) in stiff_components(operator, triangulation, problem, &least) {
+        let mut components = Vec::new();
+        for level in levels {
+            let of_level = stiff_components(operator, triangulation, problem, level);
+            components.extend(of_level.into_iter().map(|component| (component, level)));
+        }
+        for ((vertices, guide), level) in components {
             if !may_turn(problem.topology.component(SurfaceVertex(vertices[0]))) {
                 continue;
             }
             let handle = Handle::new(vertices, &problem.surface.positions);
-            let excess = |vertex: u32| problem.stiffness[vertex as usize] - least[vertex as usize];
+            let excess = |vertex: u32| level.excess(problem, vertex);
             let curvature = mean_curvature(operator, problem, &handle);
             if curvature * handle.radius < FLAT {
                 continue;

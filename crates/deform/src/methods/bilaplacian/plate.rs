@@ -6,6 +6,7 @@ use crate::sparse::system_error::SystemError;
 use crate::systems::elimination_plan::EliminationPlan;
 use crate::systems::factored::BilaplacianSystem;
 use crate::systems::setup::{Boundaries, Prescribed, operator};
+use crate::systems::stiff_parts::Level;
 use crate::{Bilaplacian, Detail};
 
 /// The factored system, the values that its handles and stiff parts prescribe, and the parts.
@@ -44,8 +45,20 @@ impl Plate {
         if let Some(elimination) = plan.direct(natural.power, budget) {
             // Details restore a rigid motion of everything by the handles' bases alone.
             let may_turn = |component: u32| options.detail == Detail::None || partition.held[component as usize];
-            let (parts, of_parts) =
-                StiffParts::attach(&mut natural, &partition.triangulation, problem, handles, may_turn);
+            // With details a part of ordinary stiffness has a base that is smaller than it is, and which the motion of a
+            // body would make swell.
+            let levels = match options.detail {
+                Detail::None => Level::all(&natural, problem),
+                _ => vec![Level::stiff(&natural, problem)],
+            };
+            let (parts, of_parts) = StiffParts::attach(
+                &mut natural,
+                &partition.triangulation,
+                problem,
+                handles,
+                &levels,
+                may_turn,
+            );
             prescribed.extend(of_parts);
             match BilaplacianSystem::new(natural, elimination, refactorisation, budget, cancel) {
                 Ok(system) => {

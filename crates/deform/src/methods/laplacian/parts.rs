@@ -1,8 +1,8 @@
 //! Stiff parts: each turns as a whole.
 //!
 //! Stiffness alone does not keep a part's shape, however large it is: Δp' does not see harmonic displacements, and the
-//! vertices' transformations differ. So each connected part C of stiffness above s₁, the larger of 1 and its component's
-//! least, has one rigid motion T_C, which fits it best in the first shape, and the excess over s₁ resists departures:
+//! vertices' transformations differ. So each connected part C of stiffness above s₁ ([`Level`]) has one rigid motion T_C,
+//! which fits it best in the first shape, and the excess over s₁ resists departures:
 //!
 //! ½ ∫ (s − s₁) (|Δp' − T_C Δp|² + q⁴ |p' − T_C p|²), q = π / r,
 //!
@@ -19,7 +19,7 @@ use crate::method::BindInput;
 use crate::numerical::rigid_fit::RigidMotion;
 use crate::systems::operator::BilaplacianOperator;
 use crate::systems::setup::Prescribed;
-use crate::systems::stiff_parts::{Guide, hang, least_stiffness, stiff_components};
+use crate::systems::stiff_parts::{Guide, Level, hang, stiff_components};
 
 /// A part.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ struct TurningPart {
 #[derive(Debug)]
 struct Member {
     local: u32,
-    /// (s − s₁) / s.
+    /// (s − s₁) / s, s without what belongs to higher levels.
     share: f64,
 }
 
@@ -50,16 +50,20 @@ impl TurningParts {
     /// Ties the parts of the problem to their anchors.
     pub fn attach(operator: &mut BilaplacianOperator, input: &BindInput<'_>) -> Self {
         let problem = input.problem;
-        let least = least_stiffness(operator, problem);
-        let excess = |vertex: u32| problem.stiffness[vertex as usize] - least[vertex as usize];
-        let components = stiff_components(operator, &input.partition.triangulation, problem, &least);
-        let part = |(vertices, guide): (Vec<u32>, Guide)| {
+        let levels = Level::all(operator, problem);
+        let mut parts = Vec::new();
+        for level in &levels {
+            let components = stiff_components(operator, &input.partition.triangulation, problem, level);
+            parts.extend(components.into_iter().map(|component| (component, level)));
+        }
+        let part = |((vertices, guide), level): ((Vec<u32>, Guide), &Level)| {
+            let excess = |vertex: u32| level.excess(problem, vertex);
             let handle = Handle::new(vertices, &problem.surface.positions);
             let anchors = hang(operator, problem, &handle, PI / handle.radius, &excess);
             let (mut members, mut world_rest) = (Vec::new(), Vec::new());
             for &vertex in &handle.vertices {
                 if let Some(local) = operator.laplacian.local(vertex) {
-                    let share = excess(vertex) / problem.stiffness[vertex as usize];
+                    let share = level.share(problem, vertex);
                     members.push(Member {
                         local: local as u32,
                         share,
@@ -75,7 +79,7 @@ impl TurningParts {
                 anchors,
             }
         };
-        Self(components.into_iter().map(part).collect())
+        Self(parts.into_iter().map(part).collect())
     }
 
     /// Returns true if nothing turns as a whole.

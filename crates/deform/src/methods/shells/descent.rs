@@ -11,9 +11,6 @@ use crate::descent::rule::{Lowered, Rule, State};
 use crate::numerical::sums::{Field, dot};
 use crate::sparse::factor_error::FactorError;
 
-/// Energies below this share of the surface's area are rounding.
-pub(super) const NOTHING: f64 = 1e-20;
-
 impl ShellsSolver {
     /// Takes one step towards the present motions; the shape must not have converged.
     pub(super) fn descend(&mut self) {
@@ -66,18 +63,14 @@ impl ShellsSolver {
     pub(super) fn rule(&self) -> Rule {
         Rule {
             tolerance: self.tolerance,
-            nothing: self.nothing(),
+            nothing: self.nothing,
             rounded: 0.0,
         }
     }
 
     /// Whether the energy is that of rounding.
     pub(super) fn is_unstrained(&self) -> bool {
-        self.current.energy <= self.nothing()
-    }
-
-    fn nothing(&self) -> f64 {
-        NOTHING * self.energy.elements.area
+        self.current.energy <= self.nothing
     }
 
     /// Takes a step that lowers the energy, if there is one, on top of `precondition`, which applies an inverse.

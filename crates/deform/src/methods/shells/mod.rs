@@ -49,6 +49,7 @@ mod hinge;
 mod lead;
 mod leaning;
 mod options;
+mod rounding;
 mod second;
 mod shape;
 mod springs;
@@ -69,6 +70,7 @@ use self::carry::Carrier;
 use self::elements::Elements;
 use self::examples::Examples;
 use self::first::First;
+use self::rounding::rounding;
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
 use self::unfolded::{Preconditioner, Unfolded};
@@ -93,6 +95,8 @@ const LED_ROW: usize = 900;
 #[derive(Debug)]
 pub(crate) struct ShellsSolver {
     energy: Energy,
+    /// Energies below this are rounding.
+    nothing: f64,
     /// None while it acts.
     descent: Option<Descent>,
     /// The data for starts from examples, if there are any.
@@ -267,6 +271,8 @@ impl ShellsSolver {
             (None, None) => return Err(BindError::OutOfMemory { free_count }),
         };
         progress.set(1.0);
+        let reach = world_origin.abs().max_element() + problem.size();
+        let nothing = rounding(energy.elements.area, reach, problem.size());
         let current = energy.at_rest();
         let local_of = energy.elements.local_of(problem.roles.len());
         let prescribed = Prescribed::of(handles, &partition.soft, &problem.surface.positions, &local_of);
@@ -289,6 +295,7 @@ impl ShellsSolver {
             descent: Some(descent),
             blending,
             memory: Memory::default(),
+            nothing,
             energy,
         })
     }

@@ -416,7 +416,7 @@ impl Document {
         self.forget_strength_unless_handles_stay(before);
         let after = &self.content.handles;
         let mut changed = vec![Aspect::Handles];
-        if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity))
+        if !are_same(before, after, |h| (h.id, h.reach, h.twin, h.soft, h.continuity))
             || !before
                 .iter()
                 .zip(after)

@@ -21,8 +21,8 @@ const COLLAPSED: f64 = 0.01;
 #[derive(Debug)]
 pub(crate) struct Folds {
     corners: Vec<[u32; 3]>,
-    /// M⁻¹ e of two edges of the surface's triangle; zeros if the base's triangle is degenerate.
-    edges: Vec<[DVec3; 2]>,
+    /// M⁻¹ a × M⁻¹ b of two edges a and b of the surface's triangle; zero if the base's triangle is degenerate.
+    areas: Vec<DVec3>,
     /// The surface at each local vertex, relative to the base's centre.
     surface: Vec<DVec3>,
     /// The middles of the surface's triangles whose triangles of the base have collapsed.
@@ -39,7 +39,7 @@ impl Folds {
             surface[local as usize] += *offset;
         }
         let mut collapsed = Vec::new();
-        let edges = faces.corners.iter().map(|corners| {
+        let areas = faces.corners.iter().map(|corners| {
             let [a, b, c] = corners.map(|corner| surface[corner as usize]);
             let [p, q, r] = corners.map(|corner| patch.rest[corner as usize]);
             let own = [b - a, c - a];
@@ -49,12 +49,15 @@ impl Folds {
             }
             let longest = (q - p).length_squared().max((r - p).length_squared());
             match triangle_frame([p, q, r]) {
-                Some(frame) if area > SLIMMEST * longest => own.map(|edge| frame.inverse() * edge),
-                _ => [DVec3::ZERO; 2],
+                Some(frame) if area > SLIMMEST * longest => {
+                    let [first, second] = own.map(|edge| frame.inverse() * edge);
+                    first.cross(second)
+                }
+                _ => DVec3::ZERO,
             }
         });
         Self {
-            edges: edges.collect(),
+            areas: areas.collect(),
             corners: faces.corners.clone(),
             centre: base.centre,
             surface,
@@ -79,15 +82,17 @@ impl Folds {
             let local = corner as usize;
             self.surface[local] + displacements[base.patch.vertices[local] as usize]
         };
-        let is_folded = |(corners, edges): (&[u32; 3], &[DVec3; 2])| {
-            let Some(frame) = triangle_frame(corners.map(|corner| posed[corner as usize])) else {
-                return false;
-            };
+        let is_folded = |(corners, area): (&[u32; 3], &DVec3)| {
+            let [p, q, r] = corners.map(|corner| posed[corner as usize]);
+            let (first, second) = (q - p, r - p);
+            let normal = first.cross(second);
+            // M' a' × M' b' with (x, y, z) = a' × b' is z e₁ × e₂ + (x e₂ − y e₁) × n; here times |e₁ × e₂|.
+            let across = (second * area.x - first * area.y).cross(normal);
+            let expected = normal * (area.z * normal.length()) + across;
             let [a, b, c] = corners.map(place);
-            let expected = (frame * edges[0]).cross(frame * edges[1]);
             expected.dot((b - a).cross(c - a)) < 0.0
         };
-        let pairs = self.corners.par_iter().zip(&self.edges).with_min_len(CHUNK);
+        let pairs = self.corners.par_iter().zip(&self.areas).with_min_len(CHUNK);
         let count = pairs.clone().filter(|pair| is_folded(*pair)).count();
         if count == 0 {
             return None;

@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::donors::NONE;
 use super::faces::Faces;
 
 /// A point's place relative to the base.
@@ -39,8 +40,8 @@ const WALK: usize = 1000;
 const TRIED: usize = 40;
 const STEPS: usize = 12;
 
-/// Newton steps end with one below this, in barycentric coordinates.
-const SMALL: f64 = 1e-13;
+/// Newton steps end with one below this, in barycentric coordinates: the error after a step is about its square.
+const SMALL: f64 = 1e-7;
 
 /// A foot may be outside its triangle by this much, in barycentric coordinates.
 const OUTSIDE: f64 = 1e-9;
@@ -72,11 +73,20 @@ impl RestBase<'_> {
     fn nearest(&self, start: u32, point: DVec3) -> Option<(u32, [f64; 3])> {
         let mut best: Option<(f64, u32, [f64; 3])> = None;
         let mut corners = [start; 3];
+        // All triangles around these have been tried.
+        let mut tried = [NONE; 3];
         for _ in 0..WALK {
             let mut is_nearer = false;
-            for corner in corners {
+            for (number, corner) in corners.into_iter().enumerate() {
+                if tried.contains(&corner) || corners[..number].contains(&corner) {
+                    continue;
+                }
                 for face in self.faces.around(corner as usize) {
-                    let places = self.faces.corners[face as usize].map(|corner| self.points[corner as usize]);
+                    let corners = self.faces.corners[face as usize];
+                    if corners.iter().any(|corner| tried.contains(corner)) {
+                        continue;
+                    }
+                    let places = corners.map(|corner| self.points[corner as usize]);
                     let weights = nearest_in(point, places);
                     let square = mix(weights, places).distance_squared(point);
                     if best.is_none_or(|(least, ..)| square < least) {
@@ -89,6 +99,7 @@ impl RestBase<'_> {
             if !is_nearer {
                 break;
             }
+            tried = corners;
             corners = self.faces.corners[face as usize];
         }
         best.map(|(_, face, weights)| (face, weights))

@@ -3,7 +3,7 @@
 //!
 //! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `normals` displaces along the base's
 //! normals from the points that `foot` finds, `volumes` keeps the volumes of the prisms (`prism`) over it, `transfer`
-//! transfers gradients, `sheets` keeps the sides of thin sheets apart, and `folds` finds what came out badly.
+//! transfers gradients, `sheets` keeps the sides of thin sheets apart (`opposing` excludes most vertices), and `folds` finds what came out badly.
 //!
 //! The base is a mesh of the surface's connectivity. For deformation transfer it is faired without end. A region that is
 //! long or has protrusions makes parts of it shrink exponentially then, so its bases are kept in f64, and if too little
@@ -18,6 +18,7 @@ mod folds;
 mod foot;
 pub(crate) mod frames;
 mod normals;
+mod opposing;
 mod prism;
 mod sheets;
 mod transfer;

@@ -14,6 +14,7 @@ use pliant_mesh::{Bounds, Bvh, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::frames::RingFrames;
+use super::opposing::{OpposingGrid, Reached};
 use crate::method::BindInput;
 use crate::numerical::rows::CHUNK;
 use crate::region::boundary_problem::BoundaryProblem;
@@ -39,6 +40,9 @@ const BROAD: f64 = 0.4;
 /// The start of rays inside the face, as a share of the way from the vertex to its centre, and below it, in sizes.
 const INSIDE: f64 = 0.01;
 const BELOW: f64 = 1e-6;
+
+/// The length of the grid's cells, in rays.
+const CELL: f64 = 0.5;
 
 /// The sheets of the bending part.
 #[derive(Debug)]
@@ -85,12 +89,16 @@ impl Sheets {
     pub fn of(input: &BindInput<'_>) -> Option<Self> {
         let &BindInput { problem, partition, .. } = input;
         let surface = Patch::of(problem, &partition.solved, |vertex| problem.surface.positions[vertex]);
-        let finder = Finder::new(problem, &surface);
+        let finder = Finder::new(problem, &surface)?;
         let around: Vec<Option<Opposite>> = surface
             .vertices
             .par_iter()
+            .zip(&finder.may_have)
             .with_min_len(CHUNK)
-            .map(|&vertex| finder.opposite(SurfaceVertex(vertex)))
+            .map_init(Vec::new, |faces, (&vertex, &may_have)| {
+                let opposite = may_have.then(|| finder.opposite(SurfaceVertex(vertex), faces));
+                opposite.flatten()
+            })
             .collect();
         let opposite = |vertex: u32| around[surface.vertices.binary_search(&vertex).ok()?];
         let solved = partition.solved.iter().copied();
@@ -180,82 +188,151 @@ impl Sheets {
 
 /// Finds the points opposite vertices.
 struct Finder<'p> {
-    problem: &'p BoundaryProblem<'p>,
-    /// Searches the triangles near the patch.
+    sides: Sides<'p>,
+    /// For each local vertex of the patch, false if nothing can be opposite it.
+    may_have: Vec<bool>,
+    /// Searches the triangles near the others.
     hierarchy: Bvh,
     triangles: Vec<u32>,
-    size: f64,
 }
 
 impl<'p> Finder<'p> {
-    fn new(problem: &'p BoundaryProblem<'p>, patch: &Patch) -> Self {
+    /// `None` if nothing is opposite any vertex.
+    fn new(problem: &'p BoundaryProblem<'p>, patch: &Patch) -> Option<Self> {
+        let sides = Sides {
+            problem,
+            size: patch.size,
+        };
         let surface = problem.surface;
-        let position = |vertex: SurfaceVertex| surface.positions[vertex.index()];
-        let near = Bounds::around(patch.rest.iter().copied()).map(|bounds| bounds.grown(THICKEST * patch.size));
+        let near = Bounds::around(patch.rest.iter().copied())?.grown(THICKEST * patch.size);
         let is_near = |&triangle: &u32| {
-            let own = Bounds::around(surface.triangles[triangle as usize].into_iter().map(position));
-            near.zip(own).is_some_and(|(near, own)| near.meets(&own))
+            let own = Bounds::around(sides.corners(triangle).into_iter());
+            own.is_some_and(|own| near.meets(&own))
         };
         let all = 0..surface.triangles.len() as u32;
-        let triangles: Vec<u32> = all.filter(is_near).collect();
+        let mut triangles: Vec<u32> = all.filter(is_near).collect();
+        let mut grid = OpposingGrid::new(near, CELL * THICKEST * patch.size, FACING);
+        for &triangle in &triangles {
+            grid.add(sides.corners(triangle), sides.area(triangle));
+        }
+        let may_have: Vec<bool> = patch
+            .vertices
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map_init(Vec::new, |faces, &vertex| {
+                let mut may_meet = false;
+                sides.each_ray(SurfaceVertex(vertex), faces, |origin, normal| {
+                    may_meet |= grid.may_meet(origin, sides.end(origin, normal), normal);
+                });
+                may_meet
+            })
+            .collect();
+        let (mut reached, mut faces) = (Reached::none(&grid), Vec::new());
+        let mut is_any = false;
+        for (&vertex, _) in patch.vertices.iter().zip(&may_have).filter(|(_, may_have)| **may_have) {
+            sides.each_ray(SurfaceVertex(vertex), &mut faces, |origin, normal| {
+                reached.mark(&grid, origin, sides.end(origin, normal));
+            });
+            is_any = true;
+        }
+        if !is_any {
+            return None;
+        }
+        triangles.retain(|&triangle| reached.holds(&grid, sides.corners(triangle)));
         let corners: Vec<_> = triangles.iter().map(|&t| surface.triangles[t as usize]).collect();
-        Self {
+        Some(Self {
             hierarchy: Bvh::build(&surface.positions, &corners),
             triangles,
-            size: patch.size,
-            problem,
-        }
+            may_have,
+            sides,
+        })
     }
 
     /// The nearest point opposite a vertex, seen from the largest face of each of its sides.
-    fn opposite(&self, vertex: SurfaceVertex) -> Option<Opposite> {
-        let (surface, topology) = (self.problem.surface, self.problem.topology);
-        let mut faces: Vec<(u32, DVec3)> = topology
-            .faces(vertex, &surface.triangles)
-            .map(|face| (face, self.area(face)))
-            .collect();
-        faces.sort_by(|(_, a), (_, b)| b.length_squared().total_cmp(&a.length_squared()));
-        let mut sides: Vec<DVec3> = Vec::new();
+    fn opposite(&self, vertex: SurfaceVertex, faces: &mut Vec<Face>) -> Option<Opposite> {
         let mut nearest: Option<Opposite> = None;
-        for (face, area) in faces {
-            let Some(normal) = area.try_normalize() else { continue };
-            if sides.iter().any(|side| side.dot(normal) > SAME_SIDE) {
-                continue;
-            }
-            sides.push(normal);
-            let limit = nearest.map_or(THICKEST * self.size, |nearest| nearest.offset.length());
-            nearest = self.below(vertex, face, normal, limit).or(nearest);
-        }
+        self.sides.each_ray(vertex, faces, |origin, normal| {
+            let limit = nearest.map_or(THICKEST * self.sides.size, |nearest| nearest.offset.length());
+            nearest = self.below(vertex, origin, normal, limit).or(nearest);
+        });
         nearest
     }
 
-    /// The point opposite a vertex below one of its faces, nearer than `limit`.
-    fn below(&self, vertex: SurfaceVertex, face: u32, normal: DVec3, limit: f64) -> Option<Opposite> {
-        let (surface, topology) = (self.problem.surface, self.problem.topology);
+    /// The point opposite a vertex on the ray from `origin` against a face's normal, nearer than `limit`.
+    fn below(&self, vertex: SurfaceVertex, origin: DVec3, normal: DVec3, limit: f64) -> Option<Opposite> {
+        let BoundaryProblem { surface, topology, .. } = self.sides.problem;
         let position = |vertex: SurfaceVertex| surface.positions[vertex.index()];
-        let own = position(vertex);
-        let centre = surface.triangles[face as usize].map(position).iter().sum::<DVec3>() / 3.0;
-        let origin = own.lerp(centre, INSIDE) - normal * (BELOW * self.size);
         let hit = self.hierarchy.ray_within(origin, -normal, limit)?;
         let met = self.triangles[hit.triangle as usize];
-        let facing = self.area(met).try_normalize()?;
+        let facing = self.sides.area(met).try_normalize()?;
         let corners = surface.triangles[met as usize];
         if facing.dot(normal) > FACING || topology.component(corners[0]) != topology.component(vertex) {
             return None;
         }
         let across: DVec3 = corners.iter().zip(hit.barycentric).map(|(c, w)| position(*c) * w).sum();
-        let offset = own - across;
+        let offset = position(vertex) - across;
         (offset.length() < limit).then_some(Opposite {
             corners: corners.map(|corner| corner.0),
             weights: hit.barycentric,
             offset,
         })
     }
+}
+
+/// A face of a vertex.
+#[derive(Clone, Copy)]
+struct Face {
+    number: u32,
+    /// Twice its area vector, and the square of that.
+    area: DVec3,
+    square: f64,
+}
+
+/// The sides of vertices, from which rays go into the body.
+struct Sides<'p> {
+    problem: &'p BoundaryProblem<'p>,
+    size: f64,
+}
+
+impl Sides<'_> {
+    /// Visits the rays of a vertex into the body: their origins below the largest face of each of its sides, and the
+    /// faces' unit normals. `faces` is only a buffer.
+    fn each_ray(&self, vertex: SurfaceVertex, faces: &mut Vec<Face>, mut visit: impl FnMut(DVec3, DVec3)) {
+        let BoundaryProblem { surface, topology, .. } = self.problem;
+        faces.clear();
+        faces.extend(topology.faces(vertex, &surface.triangles).map(|number| {
+            let area = self.area(number);
+            let square = area.length_squared();
+            Face { number, area, square }
+        }));
+        let own = surface.positions[vertex.index()];
+        // The first of the largest faces; then the largest of those that are not on its side.
+        while let Some(largest) = (faces.iter().copied()).reduce(|a, b| if b.square > a.square { b } else { a }) {
+            let Some(normal) = largest.area.try_normalize() else {
+                faces.retain(|face| face.number != largest.number);
+                continue;
+            };
+            faces.retain(|face| {
+                face.number != largest.number && normal.dot(face.area) <= SAME_SIDE * face.square.sqrt()
+            });
+            let centre = self.corners(largest.number).iter().sum::<DVec3>() / 3.0;
+            visit(own.lerp(centre, INSIDE) - normal * (BELOW * self.size), normal);
+        }
+    }
+
+    /// The end of a ray.
+    fn end(&self, origin: DVec3, normal: DVec3) -> DVec3 {
+        origin - normal * (THICKEST * self.size)
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        let surface = self.problem.surface;
+        surface.triangles[triangle as usize].map(|corner| surface.positions[corner.index()])
+    }
 
     /// Twice a triangle's area vector.
     fn area(&self, triangle: u32) -> DVec3 {
-        let surface = self.problem.surface;
-        let [a, b, c] = surface.triangles[triangle as usize].map(|corner| surface.positions[corner.index()]);
+        let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
 }
