@@ -17,7 +17,7 @@ use crate::space::point_fit::{Equations, fitted_points};
 
 /// The values of λ, the smallest first: with it the handles' constraints come first. With more than the largest one a
 /// handle is missed so far that it hardly leads.
-const REGULARISATIONS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+const REGULARISATIONS: [f64; 6] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 
 /// Where these differences leave a choice, least displacements decide, with this factor.
 pub(super) const RIDGE: f64 = 1e-3;
