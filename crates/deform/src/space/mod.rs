@@ -4,7 +4,7 @@
 //! and [`field::LinearField`] makes its frames, by a product, and its Jacobians; [`linear::BoundLinear`] is the bound
 //! form of those that meet their handles. Methods that do not hold fixed vertices by themselves fade towards them by a
 //! [`falloff::Falloff`]. Those that only fit the handles do so at [`fit_samples`], and solve for an affine map first
-//! ([`affine`]). Control points that a person may move are [`controls`], and the hand's effect on the vertices is a
+//! ([`affine`]), and for control points that meet them without swinging far ([`point_fit`]). Control points that a person may move are [`controls`], and the hand's effect on the vertices is a
 //! [`hand_field`]. Methods that are not linear evaluate each vertex of [`moving::Moving`].
 
 pub(crate) mod affine;
@@ -17,5 +17,6 @@ pub(crate) mod joining;
 pub(crate) mod linear;
 pub(crate) mod moving;
 pub(crate) mod neighbours;
+pub(crate) mod point_fit;
 pub(crate) mod shaping;
 pub(crate) mod unit;

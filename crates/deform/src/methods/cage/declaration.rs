@@ -32,6 +32,7 @@ use crate::space::affine::AffineParts;
 use crate::space::falloff::Falloff;
 use crate::space::field::{FIELD_ROW, LinearField, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
+use crate::space::point_fit::by_rows;
 use crate::sparse::system_error::SystemError;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -131,8 +132,10 @@ impl DeformMethod for Cage {
         let bytes = fit_bytes(cage.vertices.len(), samples.len()) + of_hand;
         let budget = input.partition.budget.without(bytes).map_err(over)?;
         let affine = AffineParts::fitted(&samples, input.handles, within.middle(), within.diagonal);
+        let handles = (input.handles, &*input.partition.soft);
+        let world_vertices = &chosen.attachment.rest;
         let controls_of =
-            |rows: &Mat<f64>| controls(cage, rows, &samples, input.handles, &affine, &chosen.attachment.rest);
+            |rows: &Mat<f64>| controls(cage, rows, &samples, handles, &affine, world_vertices, input.cancel);
         let vertices = moving(HandleFit::LeastSquares, input);
         let positions = &input.problem.surface.positions;
         let world_points: Vec<DVec3> = vertices.iter().map(|&vertex| positions[vertex as usize]).collect();
@@ -147,7 +150,7 @@ impl DeformMethod for Cage {
             CageCoordinates::MeanValue => {
                 let coordinates = MeanValue::new(cage);
                 let rows = mean_value_rows(&coordinates, &samples, unit);
-                let driven = controls_of(&rows);
+                let driven = controls_of(&rows)?;
                 input.progress.set(0.2);
                 if is_brought {
                     let bytes = bytes_of(vertices.len(), stored_bytes(cage.vertices.len()));
@@ -182,7 +185,7 @@ impl DeformMethod for Cage {
                     warnings.extend(told_close(&harmonic, unit, &world_points).map_err(of_cage)?);
                 }
                 let rows = harmonic_rows(&harmonic, cage.vertices.len(), &samples, unit);
-                let driven = controls_of(&rows);
+                let driven = controls_of(&rows)?;
                 let field = LinearField::bind(&HarmonicMap::new(unit, &harmonic, &driven), &falloff, fit, input)?;
                 let by_hand = is_brought.then(|| {
                     let moving = (vertices, falloff);
@@ -196,7 +199,7 @@ impl DeformMethod for Cage {
                 let bytes = of_fit + green_bytes(cage, vertices.len());
                 budget.without(bytes).map_err(over)?;
                 let rows = mean_value_rows(&MeanValue::new(cage), &samples, unit);
-                let driven = controls_of(&rows);
+                let driven = controls_of(&rows)?;
                 input.progress.set(0.2);
                 let conformal = Conformal::bind(
                     unit,
@@ -236,13 +239,4 @@ fn of_cage(refused: AttachmentRefused) -> BindError {
         title: DECLARATION.attachments[0].title,
         refused,
     }
-}
-
-/// One row for each vertex and four columns for each handle become one entry for each vertex and handle.
-fn by_rows(driven: &Mat<f64>) -> Vec<[f64; 4]> {
-    let row = |vertex: usize| {
-        let handles = 0..driven.ncols() / 4;
-        handles.map(move |handle| [0, 1, 2, 3].map(|k| driven[(vertex, 4 * handle + k)]))
-    };
-    (0..driven.nrows()).flat_map(row).collect()
 }
