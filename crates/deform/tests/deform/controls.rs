@@ -396,3 +396,34 @@ fn a_person_begins_with_few_points_of_a_lattice_on_its_box() {
     let farthest = rest.iter().map(beyond).fold(0.0, f64::max);
     assert!((0.0..=0.06 * bounds.diagonal()).contains(&farthest), "{farthest}");
 }
+
+#[test]
+fn no_control_point_swings_far_beyond_a_handle_that_is_close_to_what_is_fixed() {
+    let lattice = |norm| {
+        let lattice = Method::from_name("lattice").unwrap();
+        (norm, lattice.with([("norm", OptionValue::Name(norm))]).unwrap())
+    };
+    let fitted = [
+        lattice("bending"),
+        lattice("displacement"),
+        ("mean-value", cage(CageCoordinates::MeanValue)),
+        ("harmonic", cage(CageCoordinates::Harmonic)),
+    ];
+    for (name, method) in fitted {
+        for side in [0.3, 0.6] {
+            let mut scene = Scene::new(shapes::tube(24, 60, 8.0));
+            scene.method = method.clone();
+            let scene = scene
+                .with(Role::Fixed, |p| p.z < 4.0)
+                .with(Role::Handle(0), |p| (4.8..5.3).contains(&p.z) && p.x > side);
+            let way = DVec3::new(0.3, 0.0, 0.4);
+            let mut bound = scene.bind();
+            let rest = bound.control_positions();
+            let (displacements, _) = settle(&mut bound, &[DAffine3::from_translation(way)]);
+            let swung = apart(&bound.control_positions(), &rest);
+            assert!(swung <= 2.5 * way.length(), "{name} {side}: {swung}");
+            let torn = displacements.iter().map(|d| d.length()).fold(0.0, f64::max);
+            assert!(torn <= 2.5 * way.length(), "{name} {side}: {torn}");
+        }
+    }
+}
