@@ -72,7 +72,7 @@ pub use kept_shape::{Carries, KeptShape};
 pub use key_id::{KeyId, KeyRow};
 pub(crate) use matching::Matching;
 pub(crate) use mirror_plane::mirrored_transform;
-pub(crate) use packed_fluid::{PackedFluid, round_velocities, rounded_dye};
+pub(crate) use packed_fluid::{round_velocities, rounded_dye};
 pub(crate) use parents::{find_parents_anew, is_within};
 pub(crate) use polar::polar_decomposition;
 pub(crate) use pose::Placed;

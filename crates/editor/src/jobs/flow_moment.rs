@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_flow::{Advection, Flow, FlowError, FlowSettings};
 use pliant_mesh::{Cancel, SurfaceVertex};
+use rayon::prelude::*;
 
-use crate::document::{FlowOptions, Fluid};
+use crate::document::{Dye, FlowOptions, Fluid};
 
 /// The length of a step, in seconds: a picture of a common screen.
 pub(super) const FLOW_STEP: f64 = 1.0 / 60.0;
@@ -82,6 +83,12 @@ pub(super) fn begin_at(flow: &mut Flow<'_>, start: &Fluid) {
     };
     let dye = |vertex: usize| start.dye.as_ref().map_or([0.0; 4], |dye| dye[vertex]).map(f64::from);
     flow.set_state(velocity, dye);
+}
+
+/// The dye of each surface vertex, as documents keep it.
+pub(super) fn dyes(flow: &Flow<'_>) -> Vec<Dye> {
+    let dyes = flow.dyes().into_par_iter();
+    dyes.map(|dye| dye.map(|value| value as f32)).collect()
 }
 
 fn pour(flow: &mut Flow<'_>, splash: &Splash, vertex_count: usize) {

@@ -11,8 +11,8 @@ use pliant_flow::{Flow, FlowError};
 use pliant_mesh::{Cancel, Model, Progress};
 use rayon::prelude::*;
 
-use super::flow_moment::{FLOW_STEP, FlowMoment, begin_at};
-use crate::document::{Dye, Fluid, PackedFluid, over};
+use super::flow_moment::{FLOW_STEP, FlowMoment, begin_at, dyes};
+use crate::document::{Dye, Fluid, over};
 
 /// The most memory of the moments.
 const MOST_BYTES: usize = 1 << 29;
@@ -23,7 +23,7 @@ pub struct FlowRecording {
     model: Arc<Model>,
     /// The shape on which it was played; `None` is the file's.
     displacements: Option<Arc<Vec<DVec3>>>,
-    start: PackedFluid,
+    start: Fluid,
     moments: Vec<FlowMoment>,
     /// The memory of the moments.
     bytes: usize,
@@ -31,11 +31,11 @@ pub struct FlowRecording {
 
 impl FlowRecording {
     /// A recording without a moment.
-    pub(crate) fn new(model: Arc<Model>, displacements: Option<Arc<Vec<DVec3>>>, start: &Fluid) -> Self {
+    pub(crate) fn new(model: Arc<Model>, displacements: Option<Arc<Vec<DVec3>>>, start: Fluid) -> Self {
         Self {
             model,
             displacements,
-            start: PackedFluid::of(start),
+            start,
             moments: Vec::new(),
             bytes: 0,
         }
@@ -87,10 +87,9 @@ impl FlowRecording {
     ) -> Result<(), E> {
         let displacements = self.displacements.as_ref().map(|moved| moved.as_slice());
         let mut flow = Flow::bind_shape(&self.model, displacements, budget, progress, cancel)?;
-        let start = self.start.unpacked();
-        begin_at(&mut flow, &start);
-        let kept = start.kept.as_ref().map(|kept| kept.as_slice());
-        let shown = |flow: &Flow<'_>| -> Vec<Dye> { flow_dyes(flow, kept) };
+        begin_at(&mut flow, &self.start);
+        let kept = self.start.kept.as_ref().map(|kept| kept.as_slice());
+        let shown = |flow: &Flow<'_>| with_kept(dyes(flow), kept);
         let vertex_count = self.model.surface.positions.len();
         let mut step = 0;
         each(step, &shown(&flow))?;
@@ -104,10 +103,11 @@ impl FlowRecording {
     }
 }
 
-/// The dye of each surface vertex, over the kept one.
-fn flow_dyes(flow: &Flow<'_>, kept: Option<&[Dye]>) -> Vec<Dye> {
-    let under = |vertex: usize| kept.map_or([0.0; 4], |kept| kept[vertex]);
-    let dyes = flow.dyes().into_par_iter().enumerate();
-    dyes.map(|(vertex, dye)| over(dye.map(|value| value as f32), under(vertex)))
-        .collect()
+/// Dyes over the kept ones.
+fn with_kept(mut dyes: Vec<Dye>, kept: Option<&[Dye]>) -> Vec<Dye> {
+    if let Some(kept) = kept {
+        let pairs = dyes.par_iter_mut().zip(kept);
+        pairs.for_each(|(dye, kept)| *dye = over(*dye, *kept));
+    }
+    dyes
 }

@@ -8,7 +8,7 @@ use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::allowance::Allowance;
-use super::flow_moment::{FlowMoment, begin_at};
+use super::flow_moment::{FlowMoment, begin_at, dyes};
 use super::slot::{Unfinished, Work};
 use crate::document::{Dye, Fluid, dye_colour, over, round_velocities, rounded_dye};
 
@@ -74,11 +74,7 @@ fn flowed(
     request
         .moment
         .play(&mut flow, vertex_count, cancel, |_| Ok::<(), FlowError>(()))?;
-    let dyes: Vec<Dye> = flow
-        .dyes()
-        .into_par_iter()
-        .map(|dye| dye.map(|value| value as f32))
-        .collect();
+    let dyes = dyes(&flow);
     let kept = |vertex: usize| request.kept.as_ref().map_or([0.0; 4], |kept| kept[vertex]);
     let colours = dyes
         .par_iter()

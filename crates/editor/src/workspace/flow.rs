@@ -90,6 +90,8 @@ impl Workspace {
 impl Workspace {
     /// Requests the next job of the flow, or ends a stretch: `is_idle` says that no gesture holds the document.
     pub(crate) fn follow_flow(&mut self, is_idle: bool) {
+        self.flow
+            .forget_recording_unless(self.document.versions().of(Aspect::Fluid));
         if let Phase::Ended(fluid) = &self.flow.phase {
             if is_idle && !self.is_adjusting() {
                 let fluid = fluid.clone();
@@ -134,7 +136,7 @@ impl Workspace {
             steps,
         };
         let begun = (is_first && !is_there).then(|| Recorded {
-            recording: FlowRecording::new(Arc::clone(&model), displacements.clone(), fluid),
+            recording: FlowRecording::new(Arc::clone(&model), displacements.clone(), fluid.clone()),
             ended: 0,
             at,
         });

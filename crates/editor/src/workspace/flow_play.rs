@@ -98,6 +98,13 @@ impl FlowPlay {
         }
     }
 
+    /// Forgets a recording that did not lead to this fluid of the document, and its start.
+    pub(super) fn forget_recording_unless(&mut self, at: Version) {
+        if self.recorded.as_ref().is_some_and(|recorded| recorded.at != at) {
+            self.recorded = None;
+        }
+    }
+
     /// Ends a stretch without a trace.
     pub(super) fn drop_stretch(&mut self) {
         if let Some(recorded) = &mut self.recorded {

@@ -236,12 +236,28 @@ fn a_recording_has_the_dye_over_the_kept_one_on_the_shape_on_which_it_flowed() {
     let mut rig = sphere();
     pour(&mut rig, &to_the_right());
     rig.command(Command::KeepDye);
+    rig.paint_handle();
+    rig.move_by('y', "0.5");
+    rig.drain();
+    assert!(rig.largest_displacement() > 0.4);
     rig.command(Command::SetTool(ToolMode::Flow));
     pour(&mut rig, &to_the_right()[..4]);
+    rig.drain();
     rig.key(SPACE);
-    steps(&mut rig, 2);
+    steps(&mut rig, 4);
     rig.key(SPACE);
     rig.drain();
+    // Another shape comes after it.
+    rig.command(Command::SetTool(ToolMode::PaintHandle));
+    rig.move_by('y', "0.5");
+    let last = replayed(&rig).pop().unwrap();
+    let flowed = fluid(&rig);
+    let kept_under = flowed.kept.as_ref().unwrap();
+    let shown = flowed.dye.as_ref().unwrap().iter().zip(kept_under.iter());
+    for ([.., coverage], ([.., dye], [.., kept])) in last.iter().zip(shown) {
+        let wanted = dye + (1.0 - dye) * kept;
+        assert!((coverage - wanted).abs() < 2e-5, "{coverage} is not {wanted}");
+    }
     let kept = fluid(&rig).kept.unwrap();
     for dyes in replayed(&rig) {
         let is_covered = dyes.iter().zip(kept.iter()).all(|(dye, kept)| dye[3] >= kept[3] - 1e-6);
