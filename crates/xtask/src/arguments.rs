@@ -4,13 +4,16 @@ use std::path::PathBuf;
 
 use crate::bench::scale::Scale;
 use crate::install::Consent;
+use crate::profile::Profile;
 
 /// Printed for `--help` and for unknown commands.
 pub const HELP: &str = "\
 usage: cargo xtask COMMAND
 
-  run [FILE] [--yes]         build Pliant and open its window on the sample, or on FILE; without a display,
-                             apply the sample's edit headless and print the paths of the results
+  run [FILE] [--release] [--yes]
+                             build Pliant quickly, or with --release for speed, and open its window on the
+                             sample, or on FILE; without a display, apply the sample's edit headless and print
+                             the paths of the results
   test [FILTER..] [--yes]    run all checks: formatting, clippy, every test
   check                      run the fast checks: formatting, clippy, unit tests
   bench [SECTION..] [--full] measure, and print tables
@@ -32,6 +35,8 @@ pub enum Command {
     Run {
         /// A mesh instead of the sample.
         file: Option<PathBuf>,
+        /// How it is built.
+        profile: Profile,
         /// The consent to installing packages without asking.
         consent: Consent,
     },
@@ -83,6 +88,7 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         return Ok(Command::Help);
     };
     let (mut names, mut consent, mut scale, mut order) = (Vec::new(), Consent::Ask, Scale::Usual, Order::default());
+    let mut profile = Profile::Quick;
     let mut rest = rest.iter();
     while let Some(word) = rest.next() {
         let mut value = || {
@@ -92,6 +98,7 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         };
         match (command.as_str(), word.as_str()) {
             ("run" | "test", "--yes") => consent = Consent::Given,
+            ("run", "--release") => profile = Profile::Release,
             ("bench", "--full") => scale = Scale::Full,
             ("assets", "--triangles") => order.triangles = Some(count(&value()?)?),
             ("assets", "--output") => order.output = Some(value()?.into()),
@@ -107,6 +114,7 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         "run" if names.len() > 1 => Err(format!("`cargo xtask run` opens one file; `{}` is a second.", names[1])),
         "run" => Ok(Command::Run {
             file: names.into_iter().next().map(PathBuf::from),
+            profile,
             consent,
         }),
         "test" => Ok(Command::Test {
@@ -170,6 +178,15 @@ mod tests {
             parsed("run a.glb"),
             Ok(Command::Run {
                 file: Some("a.glb".into()),
+                profile: Profile::Quick,
+                consent: Consent::Ask
+            })
+        );
+        assert_eq!(
+            parsed("run --release"),
+            Ok(Command::Run {
+                file: None,
+                profile: Profile::Release,
                 consent: Consent::Ask
             })
         );
@@ -187,6 +204,7 @@ mod tests {
         for (line, culprit) in [
             ("fly", "fly"),
             ("test --full", "--full"),
+            ("test --release", "--release"),
             ("run a b", "`b`"),
             ("check mesh", "mesh"),
             ("package deb", "deb"),

@@ -5,7 +5,8 @@ use std::fs;
 use std::process::Command;
 
 use crate::assets::SAMPLES;
-use crate::process::{build_program, cargo, said, target_folder};
+use crate::process::{cargo, said, target_folder};
+use crate::profile::Profile;
 
 /// The methods of the gallery. Besides each method with its defaults, options that change its abilities.
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=300,arap,arap:energy=smooth,primo,\
@@ -36,7 +37,7 @@ const SIZE: &str = "1200x720";
 /// # Errors
 /// One sentence naming the failed build, picture or file.
 pub fn gallery() -> Result<(), String> {
-    build_program()?;
+    Profile::Release.build()?;
     let root = crate::root::root();
     let page = root.join("docs/methods.md");
     let mut text = fs::read_to_string(&page).map_err(|e| format!("{} can't be read: {e}.", page.display()))?;

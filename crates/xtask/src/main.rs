@@ -19,6 +19,7 @@ mod make_assets;
 mod manual;
 mod package;
 mod process;
+mod profile;
 mod python;
 mod requirement;
 mod root;
@@ -48,7 +49,7 @@ fn main() -> ExitCode {
             println!("{}", arguments::HELP);
             Ok(())
         }
-        Command::Run { file, consent } => run::run(file.as_deref(), consent),
+        Command::Run { file, profile, consent } => run::run(file.as_deref(), profile, consent),
         Command::Test { filters, consent } => test::test(&filters, consent),
         Command::Check => check::check(),
         Command::Bench { sections, scale } => bench::bench(&sections, scale),

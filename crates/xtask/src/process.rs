@@ -44,22 +44,6 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command
 }
 
-/// Builds the program in release.
-///
-/// # Errors
-/// One sentence with the command line, if cargo fails.
-pub fn build_program() -> Result<(), String> {
-    succeed(&mut cargo(&[
-        "build",
-        "--locked",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))
-}
-
 /// The folder of cargo's downloads.
 pub fn cargo_home() -> PathBuf {
     std::env::var_os("CARGO_HOME").map_or_else(

@@ -8,7 +8,8 @@ use super::meshes::creature_glb;
 use super::scale::Scale;
 use super::table::{Row, folder};
 use crate::display::{Display, Screen};
-use crate::process::{build_program, target_folder};
+use crate::process::target_folder;
+use crate::profile::Profile;
 use crate::system;
 
 /// The number of starts of each file; the median counts.
@@ -26,7 +27,7 @@ const NEAR: f64 = 0.25;
 
 /// One row per file.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    build_program()?;
+    Profile::Release.build()?;
     let mut files = vec![(30_000, crate::root::root().join("assets/creature.glb"))];
     files.push((1_000_000, creature_glb(1_000_000)?));
     if scale == Scale::Full {
