@@ -1,5 +1,7 @@
 //! The two ways to build the program.
 
+use std::process::Command;
+
 use crate::process::{cargo, succeed};
 
 /// A profile of the workspace's `Cargo.toml`.
@@ -7,13 +9,13 @@ use crate::process::{cargo, succeed};
 pub enum Profile {
     /// Least time until it runs.
     Quick,
-    /// Fast code, for measurements and daily use.
+    /// Optimised as a whole, for measurements and daily use.
     Release,
 }
 
 impl Profile {
-    /// Its name in `Cargo.toml`, and of its folder in cargo's target folder.
-    pub fn name(self) -> &'static str {
+    /// Its name in `Cargo.toml`.
+    fn name(self) -> &'static str {
         match self {
             Self::Quick => "quick",
             Self::Release => "release",
@@ -25,8 +27,13 @@ impl Profile {
     /// # Errors
     /// One sentence with the command line, if cargo fails.
     pub fn build(self) -> Result<(), String> {
-        succeed(&mut cargo(&[
-            "build",
+        succeed(&mut self.cargo("build", &[]))
+    }
+
+    /// The cargo command `verb` on the program, with `more` arguments.
+    pub fn cargo(self, verb: &str, more: &[&str]) -> Command {
+        let fixed = [
+            verb,
             "--locked",
             "--profile",
             self.name(),
@@ -34,6 +41,7 @@ impl Profile {
             "pliant-app",
             "--bin",
             "pliant",
-        ]))
+        ];
+        cargo(&[&fixed, more].concat())
     }
 }

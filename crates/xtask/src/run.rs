@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::install::{Consent, Prepared, prepare};
-use crate::process::{cargo, succeed, target_folder};
+use crate::process::{succeed, target_folder};
 use crate::profile::Profile;
 use crate::requirement::{PICTURES, WINDOW};
 
@@ -75,7 +75,7 @@ fn build(profile: Profile) -> Result<(), String> {
     match profile {
         Profile::Quick => println!(
             "Building Pliant. The first time takes about six minutes on two cores and 2 GB of disk. \
-             `--release` builds a faster program in about ten."
+             `--release` takes about ten and optimises all of it."
         ),
         Profile::Release => println!("Building Pliant for speed; the first time takes about ten minutes on two cores."),
     }
@@ -84,17 +84,5 @@ fn build(profile: Profile) -> Result<(), String> {
 
 /// Runs the built program in the workspace's folder.
 fn pliant(profile: Profile, arguments: &[&str]) -> Result<(), String> {
-    let fixed = [
-        "run",
-        "--locked",
-        "--quiet",
-        "--profile",
-        profile.name(),
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-        "--",
-    ];
-    succeed(&mut cargo(&[&fixed, arguments].concat()))
+    succeed(&mut profile.cargo("run", &[&["--quiet", "--"], arguments].concat()))
 }
