@@ -10,7 +10,7 @@ use crate::path_text::shown;
 const MOST_FRAMES: f64 = 100_000.0;
 
 /// A time this many frames before a whole frame still counts as that frame.
-const ROUNDING: f64 = 1e-6;
+pub(crate) const ROUNDING: f64 = 1e-6;
 
 /// The place of `#`s in a name: before its extension, after this.
 const BEFORE: char = '-';

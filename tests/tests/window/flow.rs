@@ -166,7 +166,7 @@ fn exported(session: &mut Session, folder: &Path) -> Vec<std::path::PathBuf> {
         session.harness.state().editor().document().animation().fps(),
         recording.seconds(),
     );
-    let count = (fps * seconds + 1e-6).floor() as usize + 1;
+    let count = (fps * seconds - 1e-6).ceil() as usize + 1;
     let name = folder.join("played.glb");
     session.harness.state_mut().export_flow(&name);
     session.settle();

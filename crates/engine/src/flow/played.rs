@@ -13,7 +13,7 @@ use super::flowing::refused;
 use super::refuse_format;
 use crate::EngineError;
 use crate::files::{Staged, Staging};
-use crate::frames::{ExistingFrames, Frames, checked_places, frame_count};
+use crate::frames::{ExistingFrames, Frames, ROUNDING, checked_places, frame_count};
 use crate::loading::Loaded;
 use crate::watch::Watch;
 
@@ -53,14 +53,14 @@ pub fn flow_frames_path(chosen: &Path) -> PathBuf {
 }
 
 /// Plays the flow again and prepares a file for each frame, from its start to its end. A frame between two steps has a
-/// mixture of their colours.
+/// mixture of their colours. The last frame shows the end, even if the end comes less than a frame after the one before.
 ///
 /// # Errors
 /// A name or a format that can't have such frames, files that would be replaced, and any refusal of the flow or of a
 /// file. Nothing is left behind then.
 pub fn stage_played_flow(job: &PlayedFlow<'_>, watch: &Watch, staging: &Staging) -> Result<StagedFlow, EngineError> {
     refuse_format(job.output)?;
-    let count = frame_count(job.recording.seconds(), job.fps)?;
+    let count = shown_frame_count(job.recording.seconds(), job.fps)?;
     let frames = Frames::of(job.output, count - 1);
     job.loaded
         .sources()
@@ -97,6 +97,13 @@ pub fn stage_played_flow(job: &PlayedFlow<'_>, watch: &Watch, staging: &Staging)
     let mut warnings = files.warnings;
     warnings.extend(frames.left_after());
     Ok(StagedFlow { staged, warnings })
+}
+
+/// The number of frames whose last one is at the end or after it.
+fn shown_frame_count(seconds: f64, fps: f64) -> Result<usize, EngineError> {
+    let whole = frame_count(seconds, fps)?;
+    let is_cut = seconds * fps - (whole - 1) as f64 > ROUNDING;
+    Ok(whole + usize::from(is_cut))
 }
 
 /// The reason why frames are not written.
