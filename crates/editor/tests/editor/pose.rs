@@ -6,8 +6,8 @@ use crate::rig::{Rig, VIEWPORT_PX};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_editor::{
-    Axis, Button, Command, EditFile, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, Selector,
-    Symmetry, ToolMode,
+    Axis, Button, Command, EditFile, Event, JobKind, Key, Modifiers, NamedView, Paint, PivotPlace, Pointer, Reach,
+    Selector, Symmetry, ToolMode,
 };
 use pliant_mesh::{Drawn, Model, shapes};
 use serde_json::{Value, json};
@@ -286,6 +286,61 @@ fn ctrl_twists_and_shift_scales_and_each_goes_on_from_where_the_other_ended() {
     assert!(!after.abs_diff_eq(turned, 1e-3));
     rig.release(mid_px + DVec2::new(-40.0, 0.0));
     rig.drain();
+}
+
+#[test]
+fn a_scale_grows_with_the_path_alike_wherever_the_limb_is_grabbed() {
+    let factor = |x| {
+        let mut rig = open();
+        let hand_px = seen(&rig, x);
+        let joint_px = seen(&rig, 0.0..0.2);
+        let outwards = (hand_px - joint_px).normalize();
+        drag(&mut rig, hand_px, outwards * 60.0, Modifiers::SHIFT);
+        let handle = &rig.editor.document().handles()[0];
+        handle.affine().transform_vector3(DVec3::X).x
+    };
+    let factors = [1.7..1.9, 2.4..2.8, 3.4..4.0, 4.4..4.8].map(factor);
+    for grown in factors {
+        let last = factors[3];
+        assert!(last > 1.1 && (grown - last).abs() < 0.25 * (last - 1.0), "{factors:?}");
+    }
+}
+
+#[test]
+fn a_twist_follows_the_pointer_from_all_sides() {
+    // The arm is across the view, points at the viewer, and nearly does.
+    for (view, orbit_px) in [
+        (NamedView::Front, 0.0),
+        (NamedView::Top, 0.0),
+        (NamedView::Right, 0.0),
+        (NamedView::Right, 60.0),
+        (NamedView::Right, 160.0),
+    ] {
+        let mut rig = open();
+        rig.command(Command::View(view));
+        let centre_px = 0.5 * VIEWPORT_PX;
+        rig.send(Event::PointerPressed(
+            pointer(centre_px, Modifiers::NONE),
+            Button::Middle,
+        ));
+        rig.move_to(centre_px + DVec2::new(orbit_px, 0.0));
+        rig.send(Event::PointerReleased(
+            pointer(centre_px + DVec2::new(orbit_px, 0.0), Modifiers::NONE),
+            Button::Middle,
+        ));
+        let from_px = seen(&rig, 4.0..4.6);
+        let mut turned = |by_px: DVec2| {
+            drag(&mut rig, from_px, by_px, Modifiers::CTRL);
+            let turn_deg = rig.editor.document().handles()[0].turn_deg.length();
+            rig.command(Command::Undo);
+            turn_deg
+        };
+        // One of both ways is across the arm, and twice as far turns about twice as much.
+        let ways = [DVec2::X, DVec2::Y].map(|way| [30.0, 60.0].map(|px| turned(px * way)));
+        let [half, whole] = if ways[0][1] > ways[1][1] { ways[0] } else { ways[1] };
+        assert!(whole > 30.0 && whole < 180.0, "{view:?} {orbit_px}: {ways:?}");
+        assert!((0.4..0.6).contains(&(half / whole)), "{view:?} {orbit_px}: {ways:?}");
+    }
 }
 
 #[test]
@@ -719,7 +774,7 @@ fn a_loose_part_that_touches_a_limb_leads_to_the_limb_and_turns_with_it() {
     let button = shapes::moved(&shapes::icosphere(2), button);
     let mut rig = Rig::open(shapes::together(&[body_with_arms(), button]));
     rig.command(Command::SetTool(ToolMode::Pose));
-    rig.command(Command::View(pliant_editor::NamedView::Front));
+    rig.command(Command::View(NamedView::Front));
     rig.drain();
     let view = rig.editor.view();
     let from_px = view.camera.project(place + DVec3::Z * 0.12, VIEWPORT_PX).unwrap();

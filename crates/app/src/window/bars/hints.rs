@@ -1,7 +1,7 @@
 //! The first steps, on the canvas, until a person closes them or has done them.
 
 use eframe::egui::{self, Align2, Color32, RichText};
-use pliant_editor::Editor;
+use pliant_editor::{Editor, ToolMode};
 
 /// The largest width of a hint, in points.
 const WIDTH: f32 = 330.0;
@@ -13,14 +13,30 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
         return false;
     }
     let is_sequence = editor.document().animation().frames().is_some();
-    let (number, title, words) = if view.handles.is_empty() {
+    let is_posing = view.tool == ToolMode::Pose;
+    let is_bent = editor.document().is_displaced() || (editor.document().is_applied() && !is_sequence);
+    let (number, title, words) = if is_posing && !is_bent {
+        (
+            1,
+            "Drag a limb",
+            "Point at a limb: what will turn is tinted, and Ctrl with the wheel moves its joint. Then drag it. Turn \
+             the view with Alt, or drag beside the model.",
+        )
+    } else if is_posing && view.handles.len() == 1 {
+        (
+            2,
+            "Go on",
+            "Ctrl twists a limb and Shift scales it while you drag. Drag above or below the joint for the next one; \
+             Symmetry in the bar above bends both sides.",
+        )
+    } else if view.handles.is_empty() {
         (
             1,
             "Paint a handle",
             "Hold the left button over the part to move, or press 7 and drag a limb. Turn the view with Alt, or drag \
              beside the model.",
         )
-    } else if !editor.document().is_displaced() && (!editor.document().is_applied() || is_sequence) {
+    } else if !is_bent {
         (
             2,
             "Drag it",

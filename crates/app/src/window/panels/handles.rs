@@ -4,7 +4,7 @@ use eframe::egui::{self, Align, Color32, ComboBox, Layout, RichText, Sense};
 use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, ConstraintKind, METHODS};
 use pliant_editor::{
-    Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
+    Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE, ToolMode,
 };
 
 use super::{bend, crease};
@@ -18,7 +18,11 @@ use crate::window::widgets::row_label::row_label;
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     if view.handles.is_empty() {
-        ui.label(RichText::new("Paint the part of the surface that you want to move.").weak());
+        let words = match view.tool {
+            ToolMode::Pose => "Drag a limb: it becomes a handle.",
+            _ => "Paint the part of the surface that you want to move.",
+        };
+        ui.label(RichText::new(words).weak());
     }
     for handle in view.handles {
         let is_selected = view.selected == Some(handle.id) || view.companions.contains(&handle.id);

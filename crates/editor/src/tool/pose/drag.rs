@@ -109,11 +109,17 @@ impl PoseDrag {
         workspace.controls.put([]);
         workspace.selection.put_alone(Some(handle.id));
         workspace.selection.wants_new_handle = false;
+        let centre = handle.centre();
+        let limb = members(&workspace.document, handle.id);
+        let arms = || limb.iter().map(|&vertex| workspace.position(vertex) - centre);
+        let radii: f64 = arms().map(|arm| arm.reject_from(axis).length()).sum();
         let motion = Motion {
             pose: Pose::of(self.last.modifiers),
-            centre: handle.centre(),
+            centre,
             axis,
             grip: self.pick.point,
+            reach: arms().map(DVec3::length).fold(0.0, f64::max),
+            girth: radii / limb.len().max(1) as f64,
             start: (handle.transform, handle.turn_deg),
         };
         self.phase = Phase::Posing(Box::new(Posing {

@@ -10,6 +10,9 @@ use crate::view::{ControlShape, View, arc_shapes};
 /// The smallest factor of scaling by the pointer.
 const MIN_FACTOR: f64 = 1e-3;
 
+/// The shortest path of the pointer for a twist by a radian, in pixels.
+const MIN_LEVER_PX: f64 = 24.0;
+
 /// The kind of motion of the limb.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Pose {
@@ -51,6 +54,10 @@ pub(super) struct Motion {
     pub(super) axis: DVec3,
     /// The grabbed point of the limb.
     pub(super) grip: DVec3,
+    /// The distance of the limb's farthest vertex from the joint.
+    pub(super) reach: f64,
+    /// The mean distance of the limb's vertices from its axis.
+    pub(super) girth: f64,
     /// The handle's transform and turn in degrees at the beginning.
     pub(super) start: (HandleTransform, DVec3),
 }
@@ -88,24 +95,42 @@ impl Motion {
             Pose::Turn => turn(from, to, view.camera().forward()),
             Pose::Twist => Way::Turn(self.axis, self.twist_rad(view, from, to)),
             Pose::Scale => {
-                let [from, to] = [from, to].map(|arm| arm.reject_from(view.camera().forward()).length());
-                let factor = if from > 0.0 { to / from } else { 1.0 };
+                let [from_length, to_length] = [from, to].map(|arm| arm.reject_from(view.camera().forward()).length());
+                // Near the joint the bare ratio would grow without bound.
+                let whole = from_length.max(self.reach);
+                let factor = if whole > 0.0 {
+                    1.0 + (to_length - from_length) / whole
+                } else {
+                    1.0
+                };
                 Way::Scale(factor.max(MIN_FACTOR))
             }
         }
     }
 
-    /// Like a ball that rolls under the pointer, if the axis is across the line of sight; else by the pointer's path
-    /// around it.
+    /// The angle in radians by which the grabbed point follows the pointer; near the axis the limb's girth is the lever.
+    /// Where that point would move along the line of sight, the limb rolls like a ball under the pointer; where the axis
+    /// is along it, a path to the right counts.
     fn twist_rad(&self, view: &View, from: DVec3, to: DVec3) -> f64 {
-        let across = self.axis.cross(view.camera().towards_eye(self.centre));
-        if across.length() > 0.4 {
-            let px = view.camera().world_per_px(self.centre, view.viewport_px());
-            let lever = from.reject_from(self.axis).length().max(24.0 * px);
-            return (to - from).dot(across.normalize()) / lever;
+        let (camera, path) = (view.camera(), to - from);
+        let least = MIN_LEVER_PX * camera.world_per_px(self.grip, view.viewport_px());
+        let sight = camera.towards_eye(self.grip);
+        let across = self.axis.cross(sight);
+        let is_across = across.length() > 0.4;
+        let radius = from.reject_from(self.axis);
+        let tangent = self.axis.cross(radius);
+        let seen = tangent.reject_from(sight);
+        let is_seen = radius.length() >= least && seen.length() > 0.5 * tangent.length();
+        let lever = self.girth.max(least);
+        match (is_seen, is_across) {
+            (true, true) => path.dot(seen.normalize()) / seen.length().max(lever),
+            (true, false) => {
+                let to = to.reject_from(self.axis);
+                self.axis.dot(radius.cross(to)).atan2(radius.dot(to))
+            }
+            (false, true) => path.dot(across.normalize()) / radius.length().max(lever),
+            (false, false) => -path.dot(camera.axes().x_axis) * self.axis.dot(sight).signum() / lever,
         }
-        let [from, to] = [from, to].map(|arm| arm.reject_from(self.axis));
-        self.axis.dot(from.cross(to)).atan2(from.dot(to))
     }
 
     /// The arc of the turn so far; none for a scale.
@@ -146,6 +171,8 @@ impl Motion {
             centre: self.centre,
             axis: (turn * self.axis).normalize(),
             grip: held,
+            reach: self.reach,
+            girth: self.girth,
             start,
         }
     }
