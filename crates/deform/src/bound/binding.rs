@@ -6,12 +6,14 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Progress};
 
 use super::sections::Split;
+use super::slivers::Slivers;
 use super::{Bound, RigidParts};
 use crate::budget::bytes_of;
 use crate::handles::residual::HandleResidual;
 use crate::handles::turns::TurnLimit;
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
+use crate::needs::Solve;
 use crate::region::follow::followers;
 use crate::rigid::Softened;
 use crate::sparse::refactorisation::Refactorisation;
@@ -221,6 +223,11 @@ impl Bound {
                 Needs::Surface { .. } => partition.handles_that_bend(&boundary),
             },
         });
+        let bends_slivers = matches!(
+            (implementation.needs(), problem.method.solve()),
+            (Needs::Surface { .. }, Solve::Direct)
+        );
+        let slivers = bends_slivers.then(|| Slivers::of(problem)).flatten();
         let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
         let world_rest = handles.iter().filter(|_| takes_places).map(rest).collect();
         let mut warnings = partition.warnings;
@@ -241,6 +248,7 @@ impl Bound {
             soft: partition.soft,
             handles,
             iteration: 0,
+            slivers: slivers.map(Box::new),
             solve: problem.method.solve(),
             name: declaration.name,
             method,

@@ -4,6 +4,7 @@ mod binding;
 mod sections;
 mod slides;
 mod sliding;
+mod slivers;
 mod step;
 mod target;
 mod targets;
@@ -17,6 +18,7 @@ use rayon::prelude::*;
 
 use self::sections::Sections;
 use self::slides::Slides;
+use self::slivers::Slivers;
 pub use self::step::Step;
 pub use self::target::{Target, TurnedMap};
 pub use self::valley::{Accuracy, Valley};
@@ -58,6 +60,8 @@ pub struct Bound {
     /// The handles that are free along a line, if there are any.
     slides: Option<Box<Slides>>,
     iteration: u32,
+    /// The slivers that a linear method's shape may turn over, if there are any.
+    slivers: Option<Box<Slivers>>,
     solve: Solve,
     name: &'static str,
     method: Box<dyn BoundMethod>,
@@ -298,6 +302,10 @@ impl Bound {
         }
         if stepped.finite == Finite::Unknown || !self.followers.is_empty() {
             gate(displacements)?;
+        }
+        // The rigid parts' binding has done it already.
+        if let (Some(slivers), None) = (&self.slivers, &self.rigid) {
+            slivers.turn_back(displacements);
         }
         step.handle_residual = self.residual.of(motions, displacements);
         self.warnings.truncate(self.target_warnings);

@@ -40,6 +40,7 @@ mod sections;
 mod shared;
 mod shells;
 mod slides;
+mod slivers;
 mod soft;
 mod soup;
 mod space;

@@ -1,0 +1,246 @@
+//! Slivers that a linear shape turns over are turned back.
+//!
+//! A smooth shape moves a vertex by as little as its bend asks, and still by more than the height of a thin triangle: a
+//! line of three vertices that bends within the surface puts the middle one beyond the side of its sliver, however
+//! right the shape is. Triangles of a Laplacian do not help, intrinsic ones either, because the *exact* bend of the
+//! vertices turns such triangles, too. So after the step, corners of turned slivers are moved across the longest side
+//! by the least distance with which the sliver faces the same side as the triangles around it. A move is kept if fewer
+//! triangles are turned after it, or as many but not this one: in a row of slivers a turned one then goes from one to
+//! the next until it has room. So the number of turned triangles never rises, and a shape without turned slivers stays
+//! the same to the bit.
+
+use glam::DVec3;
+use pliant_mesh::SurfaceVertex;
+use rayon::prelude::*;
+
+use crate::{Problem, Role};
+
+/// A triangle is a sliver if its height is below this share of its longest side.
+const THIN: f64 = 0.125;
+
+/// Below this share of its longest side squared, twice a triangle's area consists of rounding errors only.
+const LEAST_AREA: f64 = 1e-6;
+
+/// A sliver that was turned back has this share of its height at rest.
+const HEIGHT_LEFT: f64 = 0.05;
+
+/// Rounds over the turned slivers. A move can turn the next sliver of a row, which the next round moves.
+const MOST_ROUNDS: u32 = 12;
+
+/// The slivers of a surface, and the triangles around them.
+#[derive(Debug)]
+pub(super) struct Slivers {
+    slivers: Vec<Sliver>,
+    patch: Patch,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sliver {
+    /// Its number among the patch's triangles.
+    triangle: u32,
+    /// Its height over its longest side at rest, in world units.
+    height: f64,
+    /// The corner opposite its longest side.
+    apex: u8,
+}
+
+/// The triangles within two edges of a sliver, over vertices with numbers of their own.
+#[derive(Debug)]
+struct Patch {
+    /// The surface's vertices.
+    vertices: Vec<u32>,
+    rest: Vec<DVec3>,
+    /// True for vertices that a sliver may move.
+    may_move: Vec<bool>,
+    triangles: Vec<[u32; 3]>,
+    /// True for triangles whose normal opposes the others at rest, or that have none.
+    is_exempt: Vec<bool>,
+    /// The triangles at each vertex, from `starts[v]` to `starts[v + 1]`.
+    starts: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl Slivers {
+    /// The slivers of a problem that have a vertex to move; `None` if there are none.
+    pub fn of(problem: &Problem) -> Option<Self> {
+        let (surface, topology) = (problem.surface, problem.topology);
+        let may_move = |v: SurfaceVertex| problem.roles[v.index()] == Role::Free;
+        let found: Vec<(u32, f64, u8)> = surface
+            .triangles
+            .par_iter()
+            .enumerate()
+            .filter(|(_, triangle)| triangle.iter().any(|&v| may_move(v)))
+            .filter_map(|(t, _)| thin(surface.corners(t)).map(|(height, apex)| (t as u32, height, apex)))
+            .collect();
+        if found.is_empty() {
+            return None;
+        }
+        let faces = |v: SurfaceVertex| topology.faces(v, &surface.triangles);
+        let mut near: Vec<u32> = found.iter().map(|sliver| sliver.0).collect();
+        for _ in 0..3 {
+            let wider = near.iter().flat_map(|&t| surface.triangles[t as usize]);
+            let mut wider: Vec<u32> = wider.flat_map(faces).collect();
+            wider.sort_unstable();
+            wider.dedup();
+            near = wider;
+        }
+        let mut vertices: Vec<u32> = near
+            .iter()
+            .flat_map(|&t| surface.triangles[t as usize])
+            .map(|v| v.0)
+            .collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let local = |v: SurfaceVertex| vertices.partition_point(|&other| other < v.0) as u32;
+        let triangles: Vec<[u32; 3]> = near.iter().map(|&t| surface.triangles[t as usize].map(local)).collect();
+        let mut starts = vec![0; vertices.len() + 1];
+        for &v in triangles.iter().flatten() {
+            starts[v as usize + 1] += 1;
+        }
+        for v in 0..vertices.len() {
+            starts[v + 1] += starts[v];
+        }
+        let (mut next, mut around) = (starts.clone(), vec![0; 3 * triangles.len()]);
+        for (number, triangle) in triangles.iter().enumerate() {
+            for &v in triangle {
+                around[next[v as usize] as usize] = number as u32;
+                next[v as usize] += 1;
+            }
+        }
+        let mut patch = Patch {
+            rest: vertices.iter().map(|&v| surface.positions[v as usize]).collect(),
+            may_move: vertices.iter().map(|&v| may_move(SurfaceVertex(v))).collect(),
+            is_exempt: vec![false; triangles.len()],
+            vertices,
+            triangles,
+            starts,
+            around,
+        };
+        let opposes = |t: usize| patch.opposes(t as u32, &patch.rest) || !patch.has_area(t);
+        patch.is_exempt = (0..patch.triangles.len()).into_par_iter().map(opposes).collect();
+        let slivers = found.iter().map(|&(number, height, apex)| Sliver {
+            triangle: near.partition_point(|&other| other < number) as u32,
+            height,
+            apex,
+        });
+        let slivers: Vec<Sliver> = slivers.filter(|own| !patch.is_exempt[own.triangle as usize]).collect();
+        (!slivers.is_empty()).then_some(Self { slivers, patch })
+    }
+
+    /// Turns slivers back in a step's displacements, world units.
+    pub fn turn_back(&self, displacements: &mut [DVec3]) {
+        let patch = &self.patch;
+        let places = patch.vertices.iter().zip(&patch.rest);
+        let mut places: Vec<DVec3> = places.map(|(&v, rest)| *rest + displacements[v as usize]).collect();
+        let mut moved: Vec<u32> = Vec::new();
+        for _ in 0..MOST_ROUNDS {
+            let is_turned = |sliver: &&Sliver| patch.is_turned(sliver.triangle, &places);
+            let turned: Vec<Sliver> = self.slivers.par_iter().filter(is_turned).copied().collect();
+            let before = moved.len();
+            for sliver in &turned {
+                patch.turn(sliver, &mut places, &mut moved);
+            }
+            if moved.len() == before {
+                break;
+            }
+        }
+        moved.sort_unstable();
+        moved.dedup();
+        for v in moved {
+            displacements[patch.vertices[v as usize] as usize] = places[v as usize] - patch.rest[v as usize];
+        }
+    }
+}
+
+impl Patch {
+    fn around(&self, v: u32) -> &[u32] {
+        &self.around[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+    }
+
+    /// Twice a triangle's area, along its normal.
+    fn area(&self, triangle: u32, places: &[DVec3]) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle as usize].map(|v| places[v as usize]);
+        (b - a).cross(c - a)
+    }
+
+    fn has_area(&self, triangle: usize) -> bool {
+        let [a, b, c] = self.triangles[triangle].map(|v| self.rest[v as usize]);
+        let longest = a
+            .distance_squared(b)
+            .max(b.distance_squared(c))
+            .max(c.distance_squared(a));
+        (b - a).cross(c - a).length() > LEAST_AREA * longest
+    }
+
+    /// The sum of the areas of the other triangles at a triangle's corners.
+    fn others(&self, triangle: u32, places: &[DVec3]) -> DVec3 {
+        let at = |v: u32| self.around(v).iter().filter(|&&other| other != triangle);
+        let corners = self.triangles[triangle as usize].into_iter();
+        corners.flat_map(at).map(|&other| self.area(other, places)).sum()
+    }
+
+    fn opposes(&self, triangle: u32, places: &[DVec3]) -> bool {
+        self.area(triangle, places).dot(self.others(triangle, places)) < 0.0
+    }
+
+    fn is_turned(&self, triangle: u32, places: &[DVec3]) -> bool {
+        !self.is_exempt[triangle as usize] && self.opposes(triangle, places)
+    }
+
+    /// The number of turned triangles among those to which a move of `vertices` matters.
+    fn turned_near(&self, vertices: &[u32], places: &[DVec3]) -> usize {
+        let ring = vertices.iter().flat_map(|&v| self.around(v));
+        let mut ring: Vec<u32> = ring.flat_map(|&t| self.triangles[t as usize]).collect();
+        ring.sort_unstable();
+        ring.dedup();
+        let mut near: Vec<u32> = ring.iter().flat_map(|&v| self.around(v)).copied().collect();
+        near.sort_unstable();
+        near.dedup();
+        near.iter().filter(|&&t| self.is_turned(t, places)).count()
+    }
+
+    /// Moves the sliver's apex, or else the ends of its longest side, or all three, if no other triangle is turned by that.
+    fn turn(&self, sliver: &Sliver, places: &mut [DVec3], moved: &mut Vec<u32>) {
+        let corners = self.triangles[sliver.triangle as usize];
+        let [v, a, b] = [0, 1, 2].map(|k| corners[(usize::from(sliver.apex) + k) % 3]);
+        let at = |v: u32| places[v as usize];
+        let (side, others) = (at(b) - at(a), self.others(sliver.triangle, places));
+        // The direction within the surface in which the apex lies.
+        let across = others.cross(side).normalize_or_zero();
+        if across == DVec3::ZERO || !self.is_turned(sliver.triangle, places) {
+            return;
+        }
+        let lack = HEIGHT_LEFT * sliver.height - across.dot(at(v) - at(a));
+        let foot = (side.dot(at(v) - at(a)) / side.length_squared()).clamp(0.0, 1.0);
+        let all = [(v, 1.0), (a, foot - 1.0), (b, -foot)];
+        let before = self.turned_near(&corners, places);
+        for moving in [&all[..1], &all[1..], &all[..]] {
+            let moving = || moving.iter().filter(|(corner, _)| self.may_move[*corner as usize]);
+            let reach: f64 = moving().map(|(_, share)| share * share).sum();
+            if reach < 0.1 {
+                continue;
+            }
+            let kept = corners.map(|corner| places[corner as usize]);
+            for &(corner, share) in moving() {
+                places[corner as usize] += across * (share * lack / reach);
+            }
+            let after = self.turned_near(&corners, places);
+            let is_own = !self.is_turned(sliver.triangle, places);
+            if after < before || after == before && is_own {
+                moved.extend(moving().map(|(corner, _)| *corner));
+                return;
+            }
+            for (corner, place) in corners.into_iter().zip(kept) {
+                places[corner as usize] = place;
+            }
+        }
+    }
+}
+
+/// A triangle's height over its longest side and the corner opposite it, if it is a sliver.
+fn thin([a, b, c]: [DVec3; 3]) -> Option<(f64, u8)> {
+    let sides = [b.distance(c), c.distance(a), a.distance(b)];
+    let apex = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j]))?;
+    let height = (b - a).cross(c - a).length() / sides[apex];
+    (height > LEAST_AREA * sides[apex] && height < THIN * sides[apex]).then_some((height, apex as u8))
+}
