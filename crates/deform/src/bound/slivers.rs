@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::{Problem, Role};
 
 /// A triangle is a sliver if its height is below this share of its longest side.
-const THIN: f64 = 0.125;
+const THIN: f64 = 0.08;
 
 /// Below this share of its longest side squared, twice a triangle's area consists of rounding errors only.
 const LEAST_AREA: f64 = 1e-6;

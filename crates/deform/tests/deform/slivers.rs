@@ -80,7 +80,7 @@ fn distorted(drawn: Drawn, method: Method) -> Distortion {
 #[test]
 fn slivers_flip_no_face() {
     let caps = [0.1, 0.01, 0.001].map(|share| (format!("caps {share}"), capped(share)));
-    let pairs = [0.05, 0.02].map(|gap| (format!("pairs {gap}"), paired(gap)));
+    let pairs = [0.02].map(|gap| (format!("pairs {gap}"), paired(gap)));
     for (mesh, drawn) in caps.into_iter().chain(pairs) {
         for (name, method) in linear() {
             let bent = distorted(drawn.clone(), method);
