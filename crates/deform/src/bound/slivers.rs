@@ -24,6 +24,10 @@ const LEAST_AREA: f64 = 1e-6;
 /// A sliver that was turned back has this share of its height at rest.
 const HEIGHT_LEFT: f64 = 0.05;
 
+/// The triangles around a sliver on whose normals a decision depends: those at its corners, those next to them, and those
+/// with which these are compared.
+const RINGS: u32 = 3;
+
 /// Rounds over the turned slivers. A move can turn the next sliver of a row, which the next round moves.
 const MOST_ROUNDS: u32 = 12;
 
@@ -42,6 +46,8 @@ struct Sliver {
     height: f64,
     /// The corner opposite its longest side.
     apex: u8,
+    /// The triangles at its sides; itself where there is none.
+    beside: [u32; 3],
 }
 
 /// The triangles within two edges of a sliver, over vertices with numbers of their own.
@@ -75,23 +81,29 @@ impl Slivers {
         if found.is_empty() {
             return None;
         }
-        let faces = |v: SurfaceVertex| topology.faces(v, &surface.triangles);
-        let mut near: Vec<u32> = found.iter().map(|sliver| sliver.0).collect();
-        for _ in 0..3 {
-            let wider = near.iter().flat_map(|&t| surface.triangles[t as usize]);
-            let mut wider: Vec<u32> = wider.flat_map(faces).collect();
-            wider.sort_unstable();
-            wider.dedup();
-            near = wider;
+        let mut is_near = vec![false; surface.triangles.len()];
+        let mut ring: Vec<u32> = found.iter().map(|sliver| sliver.0).collect();
+        for _ in 0..RINGS {
+            let corners = ring.iter().flat_map(|&t| surface.triangles[t as usize]);
+            let faces = corners.flat_map(|v| topology.faces(v, &surface.triangles));
+            ring = faces
+                .filter(|&t| !std::mem::replace(&mut is_near[t as usize], true))
+                .collect();
         }
-        let mut vertices: Vec<u32> = near
-            .iter()
-            .flat_map(|&t| surface.triangles[t as usize])
-            .map(|v| v.0)
+        let near: Vec<u32> = (0..surface.triangles.len() as u32)
+            .filter(|&t| is_near[t as usize])
             .collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let local = |v: SurfaceVertex| vertices.partition_point(|&other| other < v.0) as u32;
+        let mut numbers = vec![u32::MAX; surface.positions.len()];
+        for v in near.iter().flat_map(|&t| surface.triangles[t as usize]) {
+            numbers[v.index()] = 0;
+        }
+        let vertices: Vec<u32> = (0..numbers.len() as u32)
+            .filter(|&v| numbers[v as usize] == 0)
+            .collect();
+        for (number, &v) in vertices.iter().enumerate() {
+            numbers[v as usize] = number as u32;
+        }
+        let local = |v: SurfaceVertex| numbers[v.index()];
         let triangles: Vec<[u32; 3]> = near.iter().map(|&t| surface.triangles[t as usize].map(local)).collect();
         let mut starts = vec![0; vertices.len() + 1];
         for &v in triangles.iter().flatten() {
@@ -116,12 +128,16 @@ impl Slivers {
             starts,
             around,
         };
-        let opposes = |t: usize| patch.opposes(t as u32, &patch.rest) || !patch.has_area(t);
+        let opposes = |t: usize| patch.opposes(t as u32, |v| patch.rest[v as usize]) || !patch.has_area(t);
         patch.is_exempt = (0..patch.triangles.len()).into_par_iter().map(opposes).collect();
-        let slivers = found.iter().map(|&(number, height, apex)| Sliver {
-            triangle: near.partition_point(|&other| other < number) as u32,
-            height,
-            apex,
+        let slivers = found.iter().map(|&(number, height, apex)| {
+            let triangle = near.partition_point(|&other| other < number) as u32;
+            Sliver {
+                triangle,
+                height,
+                apex,
+                beside: patch.beside(triangle),
+            }
         });
         let slivers: Vec<Sliver> = slivers.filter(|own| !patch.is_exempt[own.triangle as usize]).collect();
         (!slivers.is_empty()).then_some(Self { slivers, patch })
@@ -129,25 +145,14 @@ impl Slivers {
 
     /// Turns slivers back in a step's displacements, world units.
     pub fn turn_back(&self, displacements: &mut [DVec3]) {
-        let patch = &self.patch;
-        let places = patch.vertices.iter().zip(&patch.rest);
-        let mut places: Vec<DVec3> = places.map(|(&v, rest)| *rest + displacements[v as usize]).collect();
-        let mut moved: Vec<u32> = Vec::new();
         for _ in 0..MOST_ROUNDS {
-            let is_turned = |sliver: &&Sliver| patch.is_turned(sliver.triangle, &places);
-            let turned: Vec<Sliver> = self.slivers.par_iter().filter(is_turned).copied().collect();
-            let before = moved.len();
-            for sliver in &turned {
-                patch.turn(sliver, &mut places, &mut moved);
-            }
-            if moved.len() == before {
+            let at = self.patch.shape(displacements);
+            let is_turned = |sliver: &&Sliver| self.patch.is_beside_another_side(sliver, at);
+            let turned: Vec<Sliver> = self.slivers.iter().filter(is_turned).copied().collect();
+            let moves = turned.iter().filter(|sliver| self.patch.turn(sliver, displacements));
+            if moves.count() == 0 {
                 break;
             }
-        }
-        moved.sort_unstable();
-        moved.dedup();
-        for v in moved {
-            displacements[patch.vertices[v as usize] as usize] = places[v as usize] - patch.rest[v as usize];
         }
     }
 }
@@ -157,9 +162,14 @@ impl Patch {
         &self.around[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
     }
 
+    /// The place of each of its vertices.
+    fn shape(&self, displacements: &[DVec3]) -> impl Fn(u32) -> DVec3 + Copy {
+        |v| self.rest[v as usize] + displacements[self.vertices[v as usize] as usize]
+    }
+
     /// Twice a triangle's area, along its normal.
-    fn area(&self, triangle: u32, places: &[DVec3]) -> DVec3 {
-        let [a, b, c] = self.triangles[triangle as usize].map(|v| places[v as usize]);
+    fn area(&self, triangle: u32, at: impl Fn(u32) -> DVec3) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle as usize].map(at);
         (b - a).cross(c - a)
     }
 
@@ -173,22 +183,39 @@ impl Patch {
     }
 
     /// The sum of the areas of the other triangles at a triangle's corners.
-    fn others(&self, triangle: u32, places: &[DVec3]) -> DVec3 {
-        let at = |v: u32| self.around(v).iter().filter(|&&other| other != triangle);
+    fn others(&self, triangle: u32, at: impl Fn(u32) -> DVec3 + Copy) -> DVec3 {
+        let others = |v: u32| self.around(v).iter().filter(|&&other| other != triangle);
         let corners = self.triangles[triangle as usize].into_iter();
-        corners.flat_map(at).map(|&other| self.area(other, places)).sum()
+        corners.flat_map(others).map(|&other| self.area(other, at)).sum()
     }
 
-    fn opposes(&self, triangle: u32, places: &[DVec3]) -> bool {
-        self.area(triangle, places).dot(self.others(triangle, places)) < 0.0
+    /// The triangles at a triangle's sides; itself where there is none.
+    fn beside(&self, triangle: u32) -> [u32; 3] {
+        let corners = self.triangles[triangle as usize];
+        [0, 1, 2].map(|k| {
+            let (from, to) = (corners[k], corners[(k + 1) % 3]);
+            let shares = |other: &&u32| **other != triangle && self.triangles[**other as usize].contains(&to);
+            self.around(from).iter().find(shares).copied().unwrap_or(triangle)
+        })
     }
 
-    fn is_turned(&self, triangle: u32, places: &[DVec3]) -> bool {
-        !self.is_exempt[triangle as usize] && self.opposes(triangle, places)
+    /// Returns true if a sliver opposes a triangle at one of its sides. One that is turned among others that are not
+    /// does; this costs a tenth of asking all around it.
+    fn is_beside_another_side(&self, sliver: &Sliver, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
+        let own = self.area(sliver.triangle, at);
+        sliver.beside.iter().any(|&other| own.dot(self.area(other, at)) < 0.0)
+    }
+
+    fn opposes(&self, triangle: u32, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
+        self.area(triangle, at).dot(self.others(triangle, at)) < 0.0
+    }
+
+    fn is_turned(&self, triangle: u32, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
+        !self.is_exempt[triangle as usize] && self.opposes(triangle, at)
     }
 
     /// The number of turned triangles among those to which a move of `vertices` matters.
-    fn turned_near(&self, vertices: &[u32], places: &[DVec3]) -> usize {
+    fn turned_near(&self, vertices: &[u32], at: impl Fn(u32) -> DVec3 + Copy) -> usize {
         let ring = vertices.iter().flat_map(|&v| self.around(v));
         let mut ring: Vec<u32> = ring.flat_map(|&t| self.triangles[t as usize]).collect();
         ring.sort_unstable();
@@ -196,51 +223,54 @@ impl Patch {
         let mut near: Vec<u32> = ring.iter().flat_map(|&v| self.around(v)).copied().collect();
         near.sort_unstable();
         near.dedup();
-        near.iter().filter(|&&t| self.is_turned(t, places)).count()
+        near.iter().filter(|&&t| self.is_turned(t, at)).count()
     }
 
-    /// Moves the sliver's apex, or else the ends of its longest side, or all three, if no other triangle is turned by that.
-    fn turn(&self, sliver: &Sliver, places: &mut [DVec3], moved: &mut Vec<u32>) {
+    /// Moves the sliver's apex, or else the ends of its longest side, or all three; returns false if all stay.
+    fn turn(&self, sliver: &Sliver, displacements: &mut [DVec3]) -> bool {
         let corners = self.triangles[sliver.triangle as usize];
         let [v, a, b] = [0, 1, 2].map(|k| corners[(usize::from(sliver.apex) + k) % 3]);
-        let at = |v: u32| places[v as usize];
-        let (side, others) = (at(b) - at(a), self.others(sliver.triangle, places));
+        let at = self.shape(displacements);
+        let (side, arm) = (at(b) - at(a), at(v) - at(a));
         // The direction within the surface in which the apex lies.
-        let across = others.cross(side).normalize_or_zero();
-        if across == DVec3::ZERO || !self.is_turned(sliver.triangle, places) {
-            return;
+        let across = self.others(sliver.triangle, at).cross(side).normalize_or_zero();
+        if across == DVec3::ZERO || !self.is_turned(sliver.triangle, at) {
+            return false;
         }
-        let lack = HEIGHT_LEFT * sliver.height - across.dot(at(v) - at(a));
-        let foot = (side.dot(at(v) - at(a)) / side.length_squared()).clamp(0.0, 1.0);
+        let before = self.turned_near(&corners, at);
+        let lack = HEIGHT_LEFT * sliver.height - across.dot(arm);
+        let foot = (side.dot(arm) / side.length_squared()).clamp(0.0, 1.0);
         let all = [(v, 1.0), (a, foot - 1.0), (b, -foot)];
-        let before = self.turned_near(&corners, places);
+        let own = |corner: u32| self.vertices[corner as usize] as usize;
         for moving in [&all[..1], &all[1..], &all[..]] {
             let moving = || moving.iter().filter(|(corner, _)| self.may_move[*corner as usize]);
             let reach: f64 = moving().map(|(_, share)| share * share).sum();
             if reach < 0.1 {
                 continue;
             }
-            let kept = corners.map(|corner| places[corner as usize]);
+            let kept = corners.map(|corner| displacements[own(corner)]);
             for &(corner, share) in moving() {
-                places[corner as usize] += across * (share * lack / reach);
+                displacements[own(corner)] += across * (share * lack / reach);
             }
-            let after = self.turned_near(&corners, places);
-            let is_own = !self.is_turned(sliver.triangle, places);
-            if after < before || after == before && is_own {
-                moved.extend(moving().map(|(corner, _)| *corner));
-                return;
+            let at = self.shape(displacements);
+            let after = self.turned_near(&corners, at);
+            if after < before || after == before && !self.is_turned(sliver.triangle, at) {
+                return true;
             }
-            for (corner, place) in corners.into_iter().zip(kept) {
-                places[corner as usize] = place;
+            for (corner, displacement) in corners.into_iter().zip(kept) {
+                displacements[own(corner)] = displacement;
             }
         }
+        false
     }
 }
 
 /// A triangle's height over its longest side and the corner opposite it, if it is a sliver.
 fn thin([a, b, c]: [DVec3; 3]) -> Option<(f64, u8)> {
-    let sides = [b.distance(c), c.distance(a), a.distance(b)];
-    let apex = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j]))?;
-    let height = (b - a).cross(c - a).length() / sides[apex];
-    (height > LEAST_AREA * sides[apex] && height < THIN * sides[apex]).then_some((height, apex as u8))
+    let squares = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
+    let apex = (0..3).max_by(|&i, &j| squares[i].total_cmp(&squares[j]))?;
+    let area_squared = (b - a).cross(c - a).length_squared();
+    let share_squared = area_squared / (squares[apex] * squares[apex]);
+    let is_thin = share_squared > LEAST_AREA * LEAST_AREA && share_squared < THIN * THIN;
+    is_thin.then(|| ((area_squared / squares[apex]).sqrt(), apex as u8))
 }
