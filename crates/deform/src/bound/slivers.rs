@@ -13,6 +13,7 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
+use crate::numerical::lists::Lists;
 use crate::{Problem, Role};
 
 /// A triangle is a sliver if its height is below this share of its longest side.
@@ -61,9 +62,8 @@ struct Patch {
     triangles: Vec<[u32; 3]>,
     /// True for triangles whose normal opposes the others at rest, or that have none.
     is_exempt: Vec<bool>,
-    /// The triangles at each vertex, from `starts[v]` to `starts[v + 1]`.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    /// The triangles at each vertex.
+    around: Lists,
 }
 
 impl Slivers {
@@ -105,27 +105,16 @@ impl Slivers {
         }
         let local = |v: SurfaceVertex| numbers[v.index()];
         let triangles: Vec<[u32; 3]> = near.iter().map(|&t| surface.triangles[t as usize].map(local)).collect();
-        let mut starts = vec![0; vertices.len() + 1];
-        for &v in triangles.iter().flatten() {
-            starts[v as usize + 1] += 1;
-        }
-        for v in 0..vertices.len() {
-            starts[v + 1] += starts[v];
-        }
-        let (mut next, mut around) = (starts.clone(), vec![0; 3 * triangles.len()]);
-        for (number, triangle) in triangles.iter().enumerate() {
-            for &v in triangle {
-                around[next[v as usize] as usize] = number as u32;
-                next[v as usize] += 1;
-            }
-        }
+        let at_corners = (0..)
+            .zip(&triangles)
+            .flat_map(|(number, corners)| corners.map(|v| (v, number)));
+        let around = Lists::of(vertices.len(), at_corners);
         let mut patch = Patch {
             rest: vertices.iter().map(|&v| surface.positions[v as usize]).collect(),
             may_move: vertices.iter().map(|&v| may_move(SurfaceVertex(v))).collect(),
             is_exempt: vec![false; triangles.len()],
             vertices,
             triangles,
-            starts,
             around,
         };
         let opposes = |t: usize| patch.opposes(t as u32, |v| patch.rest[v as usize]) || !patch.has_area(t);
@@ -159,7 +148,7 @@ impl Slivers {
 
 impl Patch {
     fn around(&self, v: u32) -> &[u32] {
-        &self.around[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+        self.around.at(v as usize)
     }
 
     /// The place of each of its vertices.

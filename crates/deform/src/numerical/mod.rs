@@ -9,6 +9,7 @@ pub(crate) mod lane_fits;
 pub(crate) mod lanes;
 pub(crate) mod lbfgs;
 pub(crate) mod line_search;
+pub(crate) mod lists;
 pub(crate) mod nearest;
 pub(crate) mod prefetch;
 pub(crate) mod quick_rotation;

@@ -14,6 +14,7 @@ use super::hinge;
 use super::springs::springs;
 use crate::descent::springs::Springs;
 use crate::handles::Handle;
+use crate::numerical::lists::Lists;
 use crate::numerical::rows::CHUNK;
 use crate::numerical::sums::{CHUNKS_A_TASK, Field};
 use crate::region::boundary_problem::BoundaryProblem;
@@ -61,18 +62,11 @@ pub(super) struct Energy {
     /// The factor that makes the energy a number without unit: one over the area.
     pub unit: f64,
     /// For each solved vertex: its edges, doubled, plus the number of its end.
-    edges_at: Rows,
+    edges_at: Lists,
     /// For each solved vertex: its hinges, four times, plus the number of its corner.
-    hinges_at: Rows,
+    hinges_at: Lists,
     /// For each solved vertex: its triangles, four times, plus the number of its corner.
-    faces_at: Rows,
-}
-
-/// Lists by solved vertex.
-#[derive(Debug)]
-struct Rows {
-    offsets: Vec<u32>,
-    entries: Vec<u32>,
+    faces_at: Lists,
 }
 
 /// The residuals' gradients at a shape.
@@ -90,30 +84,6 @@ pub(super) struct Slopes {
     pub volume: Field,
     /// The gradient of the energy at the solved vertices.
     pub energy: Field,
-}
-
-impl Rows {
-    fn of(solved_count: usize, entries: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
-        let solved = entries.filter(|(vertex, _)| (*vertex as usize) < solved_count);
-        let mut offsets = vec![0; solved_count + 1];
-        for (vertex, _) in solved.clone() {
-            offsets[vertex as usize + 1] += 1;
-        }
-        for vertex in 0..solved_count {
-            offsets[vertex + 1] += offsets[vertex];
-        }
-        let mut next = offsets.clone();
-        let mut entries = vec![0; offsets[solved_count] as usize];
-        for (vertex, entry) in solved {
-            entries[next[vertex as usize] as usize] = entry;
-            next[vertex as usize] += 1;
-        }
-        Self { offsets, entries }
-    }
-
-    fn at(&self, vertex: usize) -> &[u32] {
-        &self.entries[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
-    }
 }
 
 impl Energy {
@@ -142,10 +112,11 @@ impl Energy {
         let of_faces = of_faces.flat_map(|(face, Face { corners, .. })| {
             [0, 1, 2].map(|corner| (corners[corner as usize], 4 * face + corner))
         });
+        let is_solved = |(vertex, _): &(u32, u32)| (*vertex as usize) < count;
         Self {
-            faces_at: Rows::of(count, of_faces),
-            edges_at: Rows::of(count, ends),
-            hinges_at: Rows::of(count, corners),
+            faces_at: Lists::of(count, of_faces.filter(is_solved)),
+            edges_at: Lists::of(count, ends.filter(is_solved)),
+            hinges_at: Lists::of(count, corners.filter(is_solved)),
             enclosed,
             examples,
             frames,

@@ -10,6 +10,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
+use crate::numerical::lists::Lists;
 use crate::operators::mollification::lack;
 use crate::operators::triangulation::flips::{Sides, flip_to_delaunay};
 use crate::operators::triangulation::surface::SurfaceTriangulation;
@@ -60,8 +61,8 @@ impl Intrinsic {
         }
         Self {
             sides,
-            neighbours: Lists::of(count, ends),
-            faces: Lists::of(count, corners),
+            neighbours: sorted_lists(count, ends),
+            faces: sorted_lists(count, corners),
             share,
             mollified_faces,
             is_delaunay,
@@ -69,7 +70,7 @@ impl Intrinsic {
     }
 
     pub fn vertex_count(&self) -> usize {
-        self.faces.starts.len() - 1
+        self.faces.len()
     }
 
     pub fn face_count(&self) -> usize {
@@ -78,12 +79,12 @@ impl Intrinsic {
 
     /// The vertices that share an edge with this one, ascending.
     pub fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
-        self.neighbours.get(vertex)
+        self.neighbours.at(vertex.index())
     }
 
     /// The triangles around a vertex, each once, ascending.
     pub fn faces(&self, vertex: SurfaceVertex) -> &[u32] {
-        self.faces.get(vertex)
+        self.faces.at(vertex.index())
     }
 
     pub fn corners(&self, face: u32) -> [SurfaceVertex; 3] {
@@ -137,34 +138,11 @@ fn mollified_lengths(triangulation: &SurfaceTriangulation) -> (Vec<[f64; 3]>, us
     (lengths, count)
 }
 
-/// A list for each vertex.
-#[derive(Clone, Debug)]
-struct Lists<T> {
-    starts: Vec<u32>,
-    entries: Vec<T>,
-}
-
-impl<T: Copy + Ord> Lists<T> {
-    /// The lists from pairs in any order; each list is sorted and without repeats.
-    fn of(count: usize, mut pairs: Vec<(SurfaceVertex, T)>) -> Self {
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut starts = vec![0_u32; count + 1];
-        for (vertex, _) in &pairs {
-            starts[vertex.index() + 1] += 1;
-        }
-        for vertex in 0..count {
-            starts[vertex + 1] += starts[vertex];
-        }
-        Self {
-            starts,
-            entries: pairs.into_iter().map(|(_, entry)| entry).collect(),
-        }
-    }
-
-    fn get(&self, vertex: SurfaceVertex) -> &[T] {
-        &self.entries[self.starts[vertex.index()] as usize..self.starts[vertex.index() + 1] as usize]
-    }
+/// A list for each vertex, of pairs in any order; each list is sorted and without repeats.
+fn sorted_lists<T: Copy + Default + Ord>(count: usize, mut pairs: Vec<(SurfaceVertex, T)>) -> Lists<T> {
+    pairs.sort_unstable();
+    pairs.dedup();
+    Lists::of(count, pairs.iter().map(|(vertex, entry)| (vertex.0, *entry)))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use super::donors::NONE;
+use crate::numerical::lists::Lists;
 use crate::numerical::rows::CHUNK;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::patch::Patch;
@@ -14,9 +15,8 @@ use crate::region::patch::Patch;
 pub(crate) struct Faces {
     /// The corners of each triangle, as local vertices of the patch.
     pub corners: Vec<[u32; 3]>,
-    /// The start of each local vertex' entries of `slots`; one more at the end.
-    starts: Vec<u32>,
-    slots: Vec<u32>,
+    /// Their places in the flattened `corners`, by local vertex.
+    slots: Lists,
 }
 
 impl Faces {
@@ -37,27 +37,15 @@ impl Faces {
                 }
             }
         }
-        let count = patch.vertices.len();
-        let mut starts = vec![0; count + 1];
-        for &corner in corners.as_flattened() {
-            starts[corner as usize + 1] += 1;
-        }
-        for local in 0..count {
-            starts[local + 1] += starts[local];
-        }
-        let mut next = starts.clone();
-        let mut slots = vec![0; corners.len() * 3];
-        for (slot, &corner) in (0..).zip(corners.as_flattened()) {
-            slots[next[corner as usize] as usize] = slot;
-            next[corner as usize] += 1;
-        }
-        Self { corners, starts, slots }
+        let pairs = corners.as_flattened().iter().copied().zip(0..);
+        let slots = Lists::of(patch.vertices.len(), pairs);
+        Self { corners, slots }
     }
 
     /// The places of a local vertex among the flattened `corners`: three times the triangle, plus the corner.
     #[inline]
     pub fn slots(&self, local: usize) -> &[u32] {
-        &self.slots[self.starts[local] as usize..self.starts[local + 1] as usize]
+        self.slots.at(local)
     }
 
     /// The triangles around a local vertex.
@@ -77,7 +65,7 @@ impl Faces {
             let sum: DVec3 = self.around(local).map(area).sum();
             sum.try_normalize().unwrap_or(DVec3::ZERO)
         };
-        (0..self.starts.len() - 1)
+        (0..self.slots.len())
             .into_par_iter()
             .with_min_len(CHUNK)
             .map(normal)
