@@ -18,7 +18,8 @@ pub use self::deform_method::{Method, MethodDeclaration};
 use crate::budget::plate_bytes;
 use crate::option::joined;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::region::partition::{Demands, Partition, check};
+use crate::region::demands::Demands;
+use crate::region::partition::{Partition, check};
 use crate::{
     Attachment, AttachmentRefused, BindError, Budget, HandleFit, Needs, OptionRefused, OptionValue, Ordering, Solve,
 };

@@ -2,11 +2,13 @@
 
 pub(crate) mod boundary_problem;
 pub(crate) mod constraints;
+pub(crate) mod demands;
 pub(crate) mod follow;
 mod images;
 pub(crate) mod nodes;
 mod owners;
 pub(crate) mod partition;
+mod partition_warnings;
 pub(crate) mod patch;
 pub(crate) mod size;
 pub(crate) mod slender;

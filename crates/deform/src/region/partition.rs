@@ -8,12 +8,14 @@
 use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
+use super::demands::Demands;
+use super::partition_warnings::{unheeded, warning_of_points, warnings_of_loose, warnings_of_unheld};
 use super::strays::strays;
 use crate::budget::bytes_of;
 use crate::numerical::graph::Graph;
 use crate::operators::triangulation::Triangulation;
 use crate::region::boundary_problem::BoundaryProblem;
-use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Remedy, Role, Warning};
+use crate::{BindError, Budget, ConstraintKind, Loose, Needs, Role, Warning};
 
 /// The vertices by role, all lists ascending.
 #[derive(Debug)]
@@ -40,17 +42,6 @@ pub(crate) struct Partition<'a> {
     pub budget: Budget,
     /// Sentences for a person about components.
     pub warnings: Vec<Warning>,
-}
-
-/// The facts about a method that decide which vertices it solves for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Demands {
-    pub method: &'static str,
-    pub needs: Needs,
-    /// The constraints that it supports.
-    pub heeds: &'static [ConstraintKind],
-    /// True if examples bend the surface by themselves.
-    pub examples_bend: bool,
 }
 
 impl<'a> Partition<'a> {
@@ -106,7 +97,7 @@ impl<'a> Partition<'a> {
             // If nothing needs to be connected, only distant components are loose.
             Needs::Points => {
                 let loose = strays(problem, &driven, &held);
-                let warnings = warnings(problem, &loose, &loose_of);
+                let warnings = warnings_of_loose(problem, &loose, &loose_of);
                 (loose, warnings.into_iter().map(Warning::from).collect())
             }
             Needs::Surface { .. } => {
@@ -115,7 +106,7 @@ impl<'a> Partition<'a> {
                 // Components of one vertex come last.
                 let bare = loose.partition_point(|&component| has_faces(component));
                 let unheld = indices(&|c| driven[c] && !held[c] && has_faces(c as u32));
-                let of_loose = warnings(problem, &loose[..bare], &loose_of)
+                let of_loose = warnings_of_loose(problem, &loose[..bare], &loose_of)
                     .into_iter()
                     .map(Warning::from);
                 let of_unheld = warnings_of_unheld(problem, &unheld, &handles);
@@ -336,158 +327,4 @@ fn solved(
     }
     let is_led = |vertex: usize| led[problem.topology.component(SurfaceVertex(vertex as u32)) as usize];
     chosen(&|vertex| (left[vertex] > 0 || is_led(vertex)) && is_free(vertex) && !is_bare(problem, demands, vertex))
-}
-
-/// Sentences about constraints that the method does not support, with the methods that do.
-fn unheeded(problem: &BoundaryProblem, demands: &Demands) -> Vec<Warning> {
-    let constraints = &problem.constraints;
-    let soft = constraints.soft.iter().position(Option::is_some);
-    let has_joints = constraints
-        .continuity
-        .iter()
-        .any(|&value| value != *CONTINUITY_RANGE.end());
-    let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
-    let name = demands.method;
-    let remedy = |kind: ConstraintKind, purpose: &str| format!("take {} for {purpose}", Remedy::Heeding(kind));
-    let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !demands.heeds.contains(&kind);
-    let mut warnings = Vec::new();
-    if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
-        let remedy = remedy(ConstraintKind::SoftHandles, "soft handles");
-        warnings.push(Warning::of_handle(handle, |handle| {
-            format!("{handle} is soft, but {name} treats every handle as hard: {remedy}")
-        }));
-    }
-    if is_unheeded(ConstraintKind::Continuity, has_joints) {
-        let remedy = remedy(ConstraintKind::Continuity, "hinges and smooth joints");
-        warnings.push(format!("{name} has no choice of continuity: {remedy}").into());
-    }
-    if is_unheeded(ConstraintKind::Stiffness, is_painted) {
-        let remedy = remedy(ConstraintKind::Stiffness, "parts that are stiffer than others");
-        warnings.push(format!("{name} ignores painted stiffness: {remedy}").into());
-    }
-    warnings
-}
-
-/// A sentence on the points that no triangle uses and nothing holds.
-fn warning_of_points(problem: &BoundaryProblem, points: &[u32], loose_of: &[Loose]) -> Option<String> {
-    let resting = points
-        .iter()
-        .filter(|&&point| loose_of[point as usize] == Loose::Rest)
-        .count();
-    let does = match (points.len() - resting, resting) {
-        _ if problem.handle_count == 0 => return None,
-        (0, 0) => return None,
-        (0, _) => "stay".to_owned(),
-        (_, 0) => "follow the nearest deformed surface".to_owned(),
-        (_, resting) => format!("follow the nearest deformed surface, except for {resting} that stay"),
-    };
-    Some(format!(
-        "points that no triangle uses ({}) {does}: {} bends them with the space around",
-        points.len(),
-        Remedy::OfSpace
-    ))
-}
-
-/// The number of components to name; more are only counted.
-const NAMED: usize = 4;
-
-/// Sentences on components without a handle and a fixed vertex.
-fn warnings(problem: &BoundaryProblem, loose: &[u32], loose_of: &[Loose]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    if problem.handle_count == 0 {
-        return sentences;
-    }
-    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
-    let sum = |components: &[u32]| components.iter().map(|&component| size(component)).sum::<usize>();
-    for (how, [it, they]) in [
-        (
-            Loose::Follow,
-            [
-                "follows the nearest deformed surface",
-                "follow the nearest deformed surface",
-            ],
-        ),
-        (
-            Loose::Bend,
-            [
-                "bends along with the nearest deformed surface",
-                "bend along with the nearest deformed surface",
-            ],
-        ),
-        (Loose::Rest, ["stays in place", "stay in place"]),
-    ] {
-        let alike = loose
-            .iter()
-            .copied()
-            .filter(|&component| loose_of[component as usize] == how);
-        let alike: Vec<u32> = alike.collect();
-        if alike.len() > NAMED {
-            sentences.push(format!(
-                "{} components ({} vertices, from component {} on) have no handle and no fixed vertex: they {they}; \
-                 {} bends them with the space around",
-                alike.len(),
-                sum(&alike),
-                alike[0],
-                Remedy::OfSpace,
-            ));
-            continue;
-        }
-        for component in alike {
-            sentences.push(format!(
-                "component {component} ({} vertices) has no handle and no fixed vertex: it {it}",
-                size(component),
-            ));
-        }
-    }
-    sentences
-}
-
-/// Sentences on components with a handle and without a fixed vertex. One that handles hold whole goes where they take it.
-fn warnings_of_unheld(problem: &BoundaryProblem, unheld: &[u32], handles: &[Vec<u32>]) -> Vec<Warning> {
-    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
-    let mut holders = vec![Vec::new(); unheld.len()];
-    if !unheld.is_empty() {
-        for (handle, vertices) in handles.iter().enumerate() {
-            for &vertex in vertices {
-                let component = problem.topology.component(SurfaceVertex(vertex));
-                let Ok(place) = unheld.binary_search(&component) else {
-                    continue;
-                };
-                match holders[place].last_mut() {
-                    Some((last, count)) if *last == handle => *count += 1,
-                    _ => holders[place].push((handle, 1)),
-                }
-            }
-        }
-    }
-    let (unheld, holders): (Vec<u32>, Vec<Vec<(usize, usize)>>) = unheld
-        .iter()
-        .copied()
-        .zip(holders)
-        .filter(|(component, holders)| holders.iter().map(|(_, count)| count).sum::<usize>() < size(*component))
-        .unzip();
-    if unheld.is_empty() {
-        return Vec::new();
-    }
-    if unheld.len() <= NAMED {
-        let one = |(&component, holders): (&u32, Vec<(usize, usize)>)| {
-            let sentence = match problem.topology.components().len() {
-                1 => "no vertex is fixed, so the shape can move as a whole".to_owned(),
-                _ => format!(
-                    "component {component} ({} vertices) has a handle but no fixed vertex, so it can move as a whole",
-                    size(component)
-                ),
-            };
-            Warning::of_unheld(sentence, vec![holders])
-        };
-        return unheld.iter().zip(holders).map(one).collect();
-    }
-    let sentence = format!(
-        "{} components ({} vertices, from component {} on) have a handle but no fixed vertex, so they can move as \
-         wholes",
-        unheld.len(),
-        unheld.iter().map(|&component| size(component)).sum::<usize>(),
-        unheld[0]
-    );
-    vec![Warning::of_unheld(sentence, holders)]
 }

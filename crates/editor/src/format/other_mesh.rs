@@ -6,8 +6,9 @@ use pliant_mesh::{Bvh, Model, OrientedPoints, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::edit_error::EditError;
-use super::edit_file::{EditFile, HandleEntry, STIFFNESS_RANGE};
+use super::edit_file::{EditFile, STIFFNESS_RANGE};
 use super::field::FieldEntry;
+use super::handle_entry::HandleEntry;
 use super::kept::StoredKept;
 use super::matched_by_place::{FoundPlaces, MatchedByPlace, percent, rounded};
 use super::places::{Oriented, PlaceTree, Places, Recorded};

@@ -5,22 +5,22 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Examples, Loose, Method, Problem, Role, Warning};
-use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex, triangles_under};
+use pliant_mesh::{Model, Surface, SurfaceVertex};
 
 use super::attachment::on_model;
 use super::edit_error::EditError;
-use super::edit_file::{EditFile, HandleEntry};
+use super::edit_file::EditFile;
+use super::handle_entry::HandleEntry;
 use super::matched_by_place::MatchedByPlace;
 use super::pivoted::with_pivot;
 use super::pose::Limbs;
 use super::selector::Selector;
+use crate::HandleTransform;
 use crate::bending::{Kept, Targets};
 use crate::document::{Document, HandleCurve, HandleId, HandleLine, attachment_part};
 use crate::lines::Lines;
 use crate::region::Region;
-use crate::snapped::snapped;
 use crate::warning::{shortened, worded};
-use crate::{HandleTransform, crease, outline};
 
 /// The input of [`pliant_deform::Problem`] from an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -233,60 +233,6 @@ impl Setup {
             .iter()
             .map(|handle| handle.transform.at(t, handle.pivot))
             .collect()
-    }
-}
-
-impl HandleEntry {
-    /// The line that it follows on a model: a curve with `snap` is found first.
-    fn line_on(&self, index: usize, model: &Model) -> Result<Option<HandleLine>, EditError> {
-        let snap = self.curve.as_ref().and_then(|rough| Some((rough, rough.snap()?)));
-        let Some((rough, distance)) = snap else {
-            return Ok(self.line());
-        };
-        let found = snapped(rough, model, distance).ok_or_else(|| EditError::Other {
-            place: format!("handles[{index}].curve.snap"),
-            sentence: format!(
-                "finds no crease and no border within {distance} of the points along the surface: move them nearer to one, \
-                 or give a larger distance"
-            ),
-        })?;
-        Ok(Some(HandleLine::Curve(found)))
-    }
-
-    /// Its vertices, each once; it follows `line`.
-    fn members(&self, index: usize, line: Option<&HandleLine>, model: &Model) -> Result<Vec<SurfaceVertex>, EditError> {
-        let select = self.select.as_ref();
-        let selected = select.map(|select| select.evaluate_at(model, &format!("handles[{index}].select")));
-        let selected = selected.transpose()?;
-        let surface = &model.surface;
-        match (line, selected) {
-            (Some(HandleLine::Sketch(sketch)), selected) => {
-                let is_selected = |vertex| selected.as_ref().is_none_or(|own| own.contains(vertex));
-                let matched = outline::matched(sketch, surface, is_selected).ok_or_else(|| EditError::Other {
-                    place: format!("handles[{index}].sketch"),
-                    sentence:
-                        "is beside no outline: draw it along one that is seen from there, or select more vertices"
-                            .to_owned(),
-                })?;
-                Ok(matched.into_iter().map(|(vertex, _)| vertex).collect())
-            }
-            (_, Some(selected)) => Ok(selected.iter().collect()),
-            (Some(HandleLine::Curve(curve)), None) => {
-                let bvh = Bvh::build(&surface.positions, &surface.triangles);
-                let under = triangles_under(curve.rest(), &bvh, &surface.triangles).into_iter();
-                let corners = under.flat_map(|triangle| surface.triangles[triangle as usize]);
-                let members: BTreeSet<SurfaceVertex> = corners.collect();
-                Ok(match curve.crease() {
-                    Some(crease) => {
-                        let position = |v: SurfaceVertex| surface.positions[v.index()];
-                        let under = members.into_iter();
-                        crease::beside(surface, &model.topology, position, under, crease.width())
-                    }
-                    None => members.into_iter().collect(),
-                })
-            }
-            (None, None) => Ok(Vec::new()),
-        }
     }
 }
 

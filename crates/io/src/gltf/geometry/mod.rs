@@ -9,6 +9,7 @@
 //! vertices, so that a mesh cut into a hundred materials is not multiplied by a hundred. Lines and points share those
 //! of any primitive with the same positions.
 
+mod corners;
 pub(crate) mod draco;
 pub(crate) mod instancing;
 pub(crate) mod meshopt;
@@ -32,6 +33,7 @@ use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
 use crate::gltf::document::layout::Layout;
+use crate::gltf::geometry::corners::{Winding, corner_count, corners, triangle_count};
 use crate::gltf::geometry::pose::SkinPose;
 pub(crate) use crate::gltf::geometry::pose::{Linear, Pose};
 use crate::gltf::geometry::primitive::{Mode, Primitive};
@@ -389,117 +391,4 @@ fn place_vertices(positions: &[[f32; 3]], pose: &Pose, first_file_vertex: Option
     drawn
         .file_vertex
         .extend((first..).take(positions.len()).map(FileVertex));
-}
-
-/// The corners of a primitive: indices into its vertices, or all of them in order.
-enum Corners {
-    Listed(Vec<u32>),
-    Counted(u32),
-}
-
-/// The winding of a triangle.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Winding {
-    AsStored,
-    Flipped,
-}
-
-/// The number of a primitive's corners, without reading them.
-fn corner_count(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<usize, String> {
-    let Some(accessor) = primitive.indices else {
-        return Ok(vertex_count);
-    };
-    Ok(document.layout(accessor)?.count)
-}
-
-/// The largest number of triangles for so many corners.
-fn triangle_count(mode: Mode, corner_count: usize) -> usize {
-    if mode == Mode::Triangles {
-        corner_count / 3
-    } else {
-        corner_count.saturating_sub(2)
-    }
-}
-
-fn corners(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<Corners, String> {
-    let Some(accessor) = primitive.indices else {
-        return Ok(Corners::Counted(vertex_count as u32));
-    };
-    let indices = document
-        .layout(accessor)?
-        .indices(document)
-        .map_err(|what| format!("has indices that {what}"))?;
-    match indices
-        .par_iter()
-        .with_min_len(CHUNK)
-        .position_first(|&index| index as usize >= vertex_count)
-    {
-        Some(at) => Err(format!("has index {}, but only {vertex_count} vertices", indices[at])),
-        None => Ok(Corners::Listed(indices)),
-    }
-}
-
-impl Corners {
-    fn len(&self) -> usize {
-        match self {
-            Self::Listed(indices) => indices.len(),
-            Self::Counted(count) => *count as usize,
-        }
-    }
-
-    /// Appends the lines over drawn vertices that begin at `first`, of which points are some; pairs of equal corners make
-    /// none.
-    fn lines(&self, mode: Mode, first: u32, out: &mut Vec<[DrawnVertex; 2]>) {
-        let corner = |k: usize| match self {
-            Self::Listed(indices) => indices[k],
-            Self::Counted(_) => k as u32,
-        };
-        let count = self.len();
-        let lines = match mode {
-            Mode::Lines => count / 2,
-            Mode::LineStrip => count.saturating_sub(1),
-            Mode::LineLoop if count > 1 => count,
-            Mode::Points => count,
-            _ => 0,
-        };
-        let line = |k: usize| match mode {
-            Mode::Lines => [corner(2 * k), corner(2 * k + 1)],
-            Mode::Points => [corner(k); 2],
-            _ => [corner(k), corner((k + 1) % count)],
-        };
-        let drawn = (0..lines).map(line).filter(|[a, b]| a != b || mode == Mode::Points);
-        out.extend(drawn.map(|ends| ends.map(|corner| DrawnVertex(first + corner))));
-    }
-
-    /// Appends the triangles over drawn vertices that begin at `first`. Degenerate triangles that connect strips (two
-    /// equal corners) are left out.
-    fn triangles(&self, mode: Mode, winding: Winding, first: u32, out: &mut Vec<[DrawnVertex; 3]>) {
-        let corner = |k: usize| match self {
-            Self::Listed(indices) => indices[k],
-            Self::Counted(_) => k as u32,
-        };
-        let triangle = |t: usize| match mode {
-            Mode::Strip if t % 2 == 1 => [corner(t + 1), corner(t), corner(t + 2)],
-            Mode::Strip => [corner(t), corner(t + 1), corner(t + 2)],
-            Mode::Fan => [corner(0), corner(t + 1), corner(t + 2)],
-            _ => [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)],
-        };
-        let wound = |[a, b, c]: [u32; 3]| {
-            let corners = if winding == Winding::Flipped {
-                [a, c, b]
-            } else {
-                [a, b, c]
-            };
-            corners.map(|corner| DrawnVertex(first + corner))
-        };
-        let all = (0..triangle_count(mode, self.len()))
-            .into_par_iter()
-            .with_min_len(CHUNK);
-        if mode == Mode::Triangles {
-            out.par_extend(all.map(|t| wound(triangle(t))));
-        } else {
-            let is_drawn = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-            out.par_extend(all.map(triangle).filter(is_drawn).map(wound));
-        }
-    }
 }
