@@ -63,8 +63,8 @@ pub use findings::{Finding, FindingKind, Findings, Named};
 pub use geodesics::{DistanceSearch, JOINT_RINGS, Joint, Shape, distances_along_surface, joint_of, level_crossing};
 pub use geometry::{
     Bounds, Damage, Damaged, Distortion, Vector3, area_of_lengths, bounding_box, concavities, cotangents, edge_lengths,
-    face_area, face_areas, face_gradient, face_normal, is_without_area, mean_curvatures, mixed_corner_areas,
-    mixed_voronoi_areas, point_in_words, vertex_normals,
+    face_area, face_areas, face_gradient, face_normal, has_normal, is_without_area, mean_curvatures,
+    mixed_corner_areas, mixed_voronoi_areas, point_in_words, vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use inspection::{Example, Inspection, LocatedFinding};

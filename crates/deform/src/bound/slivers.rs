@@ -10,7 +10,7 @@
 //! the same to the bit.
 
 use glam::DVec3;
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{SurfaceVertex, has_normal};
 use rayon::prelude::*;
 
 use crate::numerical::lists::Lists;
@@ -18,9 +18,6 @@ use crate::{Problem, Role};
 
 /// A triangle is a sliver if its height is below this share of its longest side.
 const THIN: f64 = 0.08;
-
-/// Below this share of its longest side squared, twice a triangle's area consists of rounding errors only.
-const LEAST_AREA: f64 = 1e-6;
 
 /// A sliver that was turned back has this share of its height at rest.
 const HEIGHT_LEFT: f64 = 0.05;
@@ -117,8 +114,9 @@ impl Slivers {
             triangles,
             around,
         };
-        let opposes = |t: usize| patch.opposes(t as u32, |v| patch.rest[v as usize]) || !patch.has_area(t);
-        patch.is_exempt = (0..patch.triangles.len()).into_par_iter().map(opposes).collect();
+        let rest = |v: u32| patch.rest[v as usize];
+        let is_exempt = |t: usize| patch.opposes(t as u32, rest) || !has_normal(patch.triangles[t].map(rest));
+        patch.is_exempt = (0..patch.triangles.len()).into_par_iter().map(is_exempt).collect();
         let slivers = found.iter().map(|&(number, height, apex)| {
             let triangle = near.partition_point(|&other| other < number) as u32;
             Sliver {
@@ -136,9 +134,11 @@ impl Slivers {
     pub fn turn_back(&self, displacements: &mut [DVec3]) {
         for _ in 0..MOST_ROUNDS {
             let at = self.patch.shape(displacements);
-            let is_turned = |sliver: &&Sliver| self.patch.is_beside_another_side(sliver, at);
-            let turned: Vec<Sliver> = self.slivers.iter().filter(is_turned).copied().collect();
-            let moves = turned.iter().filter(|sliver| self.patch.turn(sliver, displacements));
+            let may_be_turned = |sliver: &&Sliver| self.patch.opposes_one_beside(sliver, at);
+            let candidates: Vec<Sliver> = self.slivers.iter().filter(may_be_turned).copied().collect();
+            let moves = candidates
+                .iter()
+                .filter(|sliver| self.patch.turn(sliver, displacements));
             if moves.count() == 0 {
                 break;
             }
@@ -162,15 +162,6 @@ impl Patch {
         (b - a).cross(c - a)
     }
 
-    fn has_area(&self, triangle: usize) -> bool {
-        let [a, b, c] = self.triangles[triangle].map(|v| self.rest[v as usize]);
-        let longest = a
-            .distance_squared(b)
-            .max(b.distance_squared(c))
-            .max(c.distance_squared(a));
-        (b - a).cross(c - a).length() > LEAST_AREA * longest
-    }
-
     /// The sum of the areas of the other triangles at a triangle's corners.
     fn others(&self, triangle: u32, at: impl Fn(u32) -> DVec3 + Copy) -> DVec3 {
         let others = |v: u32| self.around(v).iter().filter(|&&other| other != triangle);
@@ -189,8 +180,8 @@ impl Patch {
     }
 
     /// Returns true if a sliver opposes a triangle at one of its sides. One that is turned among others that are not
-    /// does; this costs a tenth of asking all around it.
-    fn is_beside_another_side(&self, sliver: &Sliver, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
+    /// does; this reads three triangles, where those at its corners are some twenty.
+    fn opposes_one_beside(&self, sliver: &Sliver, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
         let own = self.area(sliver.triangle, at);
         sliver.beside.iter().any(|&other| own.dot(self.area(other, at)) < 0.0)
     }
@@ -260,6 +251,6 @@ fn thin([a, b, c]: [DVec3; 3]) -> Option<(f64, u8)> {
     let apex = (0..3).max_by(|&i, &j| squares[i].total_cmp(&squares[j]))?;
     let area_squared = (b - a).cross(c - a).length_squared();
     let share_squared = area_squared / (squares[apex] * squares[apex]);
-    let is_thin = share_squared > LEAST_AREA * LEAST_AREA && share_squared < THIN * THIN;
+    let is_thin = share_squared < THIN * THIN && has_normal([a, b, c]);
     is_thin.then(|| ((area_squared / squares[apex]).sqrt(), apex as u8))
 }

@@ -307,6 +307,34 @@ fn a_scale_grows_with_the_path_alike_wherever_the_limb_is_grabbed() {
 }
 
 #[test]
+fn a_scale_that_a_twist_interrupts_ends_where_one_without_a_break_does() {
+    let factor = |is_interrupted: bool| {
+        let mut rig = open();
+        let hand_px = seen(&rig, 3.4..4.0);
+        let outwards = (hand_px - seen(&rig, 0.0..0.2)).normalize();
+        let at = |way_px: f64, modifiers| pointer(hand_px + way_px * outwards, modifiers);
+        rig.move_to(hand_px);
+        rig.drain();
+        rig.send(Event::PointerPressed(at(0.0, Modifiers::SHIFT), Button::Primary));
+        rig.send(Event::PointerMoved(at(150.0, Modifiers::SHIFT)));
+        if is_interrupted {
+            rig.send(Event::PointerMoved(at(150.0, Modifiers::CTRL)));
+            rig.send(Event::PointerMoved(at(150.0, Modifiers::SHIFT)));
+        }
+        rig.send(Event::PointerMoved(at(300.0, Modifiers::SHIFT)));
+        rig.release(hand_px + 300.0 * outwards);
+        rig.drain();
+        let handle = &rig.editor.document().handles()[0];
+        handle.affine().transform_vector3(DVec3::X).x
+    };
+    let [whole, interrupted] = [false, true].map(factor);
+    assert!(
+        whole > 1.5 && (interrupted / whole - 1.0).abs() < 0.01,
+        "{whole} {interrupted}"
+    );
+}
+
+#[test]
 fn a_twist_follows_the_pointer_from_all_sides() {
     // The arm is across the view, points at the viewer, and nearly does.
     for (view, orbit_px) in [

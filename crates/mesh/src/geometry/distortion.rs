@@ -98,17 +98,18 @@ fn edge_stretch(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> (
 pub(super) fn flipped(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> Vec<bool> {
     let at_rest = opposing_faces(surface, topology, &surface.positions);
     let now = opposing_faces(surface, topology, deformed);
-    let has_area = |triangle: &[SurfaceVertex; 3]| has_area(corners(*triangle, &surface.positions));
+    let has_normal = |triangle: &[SurfaceVertex; 3]| has_normal(corners(*triangle, &surface.positions));
     let each = at_rest.iter().zip(&now).zip(&surface.triangles);
-    each.map(|((&rest, &now), triangle)| now && !rest && has_area(triangle))
+    each.map(|((&rest, &now), triangle)| now && !rest && has_normal(triangle))
         .collect()
 }
 
 /// Below this share of its longest side squared, a triangle's area consists of rounding errors only.
 const LEAST_AREA: f64 = 1e-6;
 
-/// Returns true if a triangle has enough area to determine its normal.
-fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+/// Returns true if a triangle's area, by the positions of its corners, is more than rounding errors, so that its normal
+/// can be trusted.
+pub fn has_normal([a, b, c]: [DVec3; 3]) -> bool {
     let longest = a
         .distance_squared(b)
         .max(b.distance_squared(c))

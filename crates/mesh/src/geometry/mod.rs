@@ -25,7 +25,7 @@ pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas};
 pub use concavity::concavities;
 pub use curvature::mean_curvatures;
 pub use damage::{Damage, Damaged, point_in_words};
-pub use distortion::Distortion;
+pub use distortion::{Distortion, has_normal};
 pub use ears::{WithoutEar, ears, turn};
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;

@@ -162,17 +162,17 @@ impl Motion {
 
     /// The motion that continues from there as another kind.
     pub(super) fn go_on(&self, pose: Pose, way: Way, held: DVec3, start: (HandleTransform, DVec3)) -> Self {
-        let turn = match way {
-            Way::Turn(axis, angle_rad) => rotation(axis, angle_rad),
-            Way::Scale(_) => DQuat::IDENTITY,
+        let (turn, factor) = match way {
+            Way::Turn(axis, angle_rad) => (rotation(axis, angle_rad), 1.0),
+            Way::Scale(factor) => (DQuat::IDENTITY, factor),
         };
         Self {
             pose,
             centre: self.centre,
             axis: (turn * self.axis).normalize(),
             grip: held,
-            reach: self.reach,
-            girth: self.girth,
+            reach: factor * self.reach,
+            girth: factor * self.girth,
             start,
         }
     }
