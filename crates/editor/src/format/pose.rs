@@ -24,8 +24,8 @@ pub struct PoseEntry {
     /// A point on the limb, in world space; the nearest point of the surface counts.
     #[serde(with = "vector")]
     pub at: DVec3,
-    /// The number of candidates by which its joint is farther from the limb's tip than the guess. No candidate is nearer,
-    /// so negative numbers are refused.
+    /// The number of candidates by which its joint is farther from the limb's tip than the guess; negative for one that is
+    /// nearer, such as a finger's where the guess is the hand.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub up: i32,
 }

@@ -43,7 +43,7 @@ impl Jobs {
     /// Wants the candidate that is so many places farther from the limb's tip than the shown joint, or the guess again.
     pub(crate) fn want_joint(&mut self, places: Option<i32>) {
         let shown = self.computed.joint().map_or(self.joint_up, |joint| joint.up);
-        self.joint_up = places.map_or(0, |places| (shown + places).max(0));
+        self.joint_up = places.map_or(0, |places| shown + places);
     }
 
     /// Requests the joint under a triangle of the present shape. The running search continues, so that a steadily

@@ -53,13 +53,18 @@ fn a_limb_that_is_as_thick_as_it_is_long_bends_where_it_meets_the_body() {
 }
 
 /// The joint under a triangle.
-fn joint_at(model: &Model, (triangle, middle): (u32, glam::DVec3)) -> Option<Joint> {
+fn joint_at(model: &Model, place: (u32, glam::DVec3)) -> Option<Joint> {
+    candidate_at(model, place, 0)
+}
+
+/// The candidate `up` of the joint under a triangle.
+fn candidate_at(model: &Model, (triangle, middle): (u32, glam::DVec3), up: i32) -> Option<Joint> {
     let shape = Shape {
         triangles: &model.surface.triangles,
         topology: &model.topology,
         positions: &model.surface.positions,
     };
-    joint_of(&shape, triangle, middle, 0, &Cancel::new()).unwrap()
+    joint_of(&shape, triangle, middle, up, &Cancel::new()).unwrap()
 }
 
 /// Turned about the z axis from `top` to `bottom`, with closed ends.
@@ -160,4 +165,49 @@ fn other_parts_do_not_hide_a_limb() {
     let (alone, with_eye) = (joint(&alone).unwrap(), joint(&with_eye).unwrap());
     assert!(alone.centre.distance(with_eye.centre) < 1e-9, "{}", with_eye.centre);
     assert_eq!(alone.limb.len(), with_eye.limb.len());
+}
+
+#[test]
+fn a_finger_leads_to_its_hand_and_the_candidate_before_the_guess_is_its_own() {
+    // A finger of 0.03 on an arm of 0.2 on a ball of radius 1.
+    let model = shapes::model(turned(2.7, -1.0, |z| {
+        let ball = (1.0 - z * z).max(0.0).sqrt();
+        let part = |radius: f64, length: f64| {
+            let rest = (length - z).max(0.0);
+            if rest < radius {
+                (rest * (2.0 * radius - rest)).sqrt()
+            } else {
+                radius
+            }
+        };
+        ball.max(part(0.2, 2.4)).max(part(0.03, 2.7))
+    }));
+    for side in [0, 7, 19] {
+        let place = triangle_at(&model, 2.62, side);
+        let guess = joint_at(&model, place).unwrap();
+        assert_upright(&guess, (2.62, side), 0.8..2.2, 0.2);
+        let finger = candidate_at(&model, place, -1).unwrap();
+        assert_eq!((guess.up, finger.up), (0, -1));
+        assert_upright(&finger, (2.62, side), 2.3..2.5, 0.03);
+        // There are no more on that side.
+        assert_eq!(candidate_at(&model, place, -5).unwrap(), finger);
+    }
+}
+
+#[test]
+fn a_ring_across_a_palm_is_no_wrist() {
+    // Fingers as one of 0.22 on a palm of 0.34, a wrist of 0.14, an arm of 0.24 and a ball of radius 1.
+    let model = shapes::model(turned(3.4, -1.0, |z| {
+        let ball = (1.0 - z * z).max(0.0).sqrt();
+        let tip = (3.4 - z).clamp(0.0, 0.22);
+        let fingers = (tip * (0.44 - tip)).sqrt();
+        let bump = |at: f64, height: f64, width: f64| height * (-((z - at) / width).powi(2)).exp();
+        let limb = if z < 3.0 { 0.22 } else { fingers };
+        ball.max(limb + bump(2.55, 0.12, 0.14) - bump(2.1, 0.08, 0.18) + bump(1.5, 0.02, 0.3))
+    }));
+    for side in [0, 7, 19] {
+        let place = triangle_at(&model, 3.1, side);
+        let guess = joint_at(&model, place).unwrap();
+        assert_upright(&guess, (3.1, side), 1.9..2.3, 0.14);
+    }
 }

@@ -21,6 +21,14 @@ const NARROWS: f64 = 1.15;
 /// The length of limb, in radii, that makes one candidate in the middle of a gap.
 const GAP_RADII: f64 = 4.8;
 
+/// A limb that the guess cuts off has at least this share of the area, so that a finger leads to its hand.
+const LEAST_GUESS: f64 = 0.005;
+
+/// A ring that shows as a joint is across a palm if it is wider by this ratio than a later one within so many of its own
+/// radii.
+const NARROWS_LATER: f64 = 1.2;
+const LATER_RADII: f64 = 4.0;
+
 /// A limb that is this many times wider than its narrowest ring is no longer the same limb.
 const WIDENED: f64 = 2.2;
 
@@ -57,8 +65,26 @@ const NECK: f64 = 1.5;
 /// The point's distance from the joint is at least this many radii.
 const CLEAR_RADII: f64 = 0.25;
 
-/// The candidates beyond a point, as levels, ascending. The first of them is the guess: the first joint that the rings
-/// show, or the narrowest ring if the limb widens before that. Limbs below the share `least` of the area do not count. `is_whole` tells
+/// The joints that a point may mean.
+pub(super) struct Candidates {
+    /// Their levels, ascending.
+    levels: Vec<usize>,
+    /// The place of the likeliest one.
+    guess: usize,
+}
+
+impl Candidates {
+    /// The level of the candidate `up` places from the guess, or of the last one on that side, and its number of places.
+    /// `None` if there is none.
+    pub(super) fn at(&self, up: i32) -> Option<(usize, i32)> {
+        let last = self.levels.len().checked_sub(1)? as i32;
+        let place = (self.guess as i32).saturating_add(up).clamp(0, last);
+        Some((self.levels[place as usize], place - self.guess as i32))
+    }
+}
+
+/// The candidates beyond a point. The guess is the first joint that the rings show and that is not a detail's, or the
+/// narrowest ring if the limb widens before that. Limbs below the share `least` of the area do not count. `is_whole` tells
 /// that the rings are those of the whole surface.
 pub(super) fn candidates(
     rings: &Rings,
@@ -66,7 +92,34 @@ pub(super) fn candidates(
     source: Source,
     least: f64,
     is_whole: bool,
-) -> Vec<usize> {
+) -> Candidates {
+    let levels = levels(rings, corners, source, least, is_whole);
+    let shown = joints(rings);
+    let is_palm = |level: &usize| shown.contains(level) && narrows_later(rings, *level);
+    let is_likely = |level: &usize| rings.limb_share(*level) >= LEAST_GUESS && !is_palm(level);
+    let likely = levels.iter().position(is_likely);
+    match likely.or(is_whole.then_some(0)) {
+        Some(guess) => Candidates { levels, guess },
+        // The likely one is beyond the search's limit.
+        None => Candidates {
+            levels: Vec::new(),
+            guess: 0,
+        },
+    }
+}
+
+/// Returns true if the limb is clearly narrower not far beyond a level.
+fn narrows_later(rings: &Rings, level: usize) -> bool {
+    let length = rings.lengths()[level];
+    let end = rings.radii()[level] + LATER_RADII * length / TAU;
+    let later = (level..rings.lengths().len()).take_while(|&later| rings.radii()[later] <= end);
+    later
+        .map(|later| rings.lengths()[later])
+        .any(|later| later > 0.0 && NARROWS_LATER * later < length)
+}
+
+/// The levels of the candidates, ascending.
+fn levels(rings: &Rings, corners: &[SurfaceVertex; 3], source: Source, least: f64, is_whole: bool) -> Vec<usize> {
     let mut all = shown(rings, corners, least);
     // Rings beyond the search's limit may be narrower.
     let narrowest = rings

@@ -195,9 +195,8 @@ impl<'a> Hunt<'a> {
             let (field, rings) = &*around;
             let candidates =
                 candidates::candidates(rings, &self.corners, origin.source, origin.least, limit.is_infinite());
-            let place = up.clamp(0, candidates.len().saturating_sub(1) as i32);
-            let found = candidates.get(place as usize);
-            if let Some(&level) = found.filter(|_| limit.is_infinite() || place == up) {
+            let found = candidates.at(up);
+            if let Some((level, place)) = found.filter(|&(_, place)| limit.is_infinite() || place == up) {
                 return Ok(Some((Cut::of(self.shape, field, rings, level), place)));
             }
             if limit.is_infinite() {

@@ -6,7 +6,8 @@
 //! across the limb, and the joint is the narrowest ring at an even distance from that plane.
 //!
 //! A person can ask for another joint than this guess. The candidates are the rings around the tip that are narrower
-//! than their surroundings, and evenly spaced ones where there is none for a while ([`candidates`]).
+//! than their surroundings, and evenly spaced ones where there is none for a while ([`candidates`]). Fingers are nearer
+//! candidates than the guess, which is their hand.
 //!
 //! If a limb is as thick as it is long, no ring around a point on its side closes before it reaches the body. Rings
 //! around a point on a head's side close, but around the face. In both cases the tip is the point farthest from the other
@@ -18,7 +19,8 @@
 //! is the joint ([`candidates::neck`]).
 //!
 //! If the joint is that of a large part, or there is none, the search is made again by ways that count as longer across
-//! concave creases ([`ways`]): so an ear, a head without a neck and a tail like a half ball are found.
+//! concave creases ([`ways`]): so an ear, a head without a neck and a tail like a half ball are found. The joints of the
+//! search that was not preferred are farther candidates than those of the other.
 
 mod candidates;
 mod cut;
@@ -51,13 +53,16 @@ const NARROWER: f64 = 0.8;
 /// Their ring's area over that of its limb is at most so many times as large.
 const LESS_NARROW: f64 = 2.0;
 
+/// A limb by the other ways is another one if its area is at least so many times as large.
+const FARTHER: f64 = 1.15;
+
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more, or less
 /// if the limb is the head of a bust; `None`
 /// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
 ///
-/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, which is the first one
-/// beyond the point. If there are fewer, the last one is taken, and [`Joint::up`] has its number; it is 0 if `up` is
-/// negative.
+/// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, or nearer to it if it is
+/// negative. The guess is the first one beyond the point whose limb is more than a finger. If there are fewer, the last one
+/// on that side is taken, and [`Joint::up`] has its number.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised.
@@ -71,24 +76,54 @@ pub fn joint_of(
     up: i32,
     cancel: &Cancel,
 ) -> Result<Option<Joint>, Cancelled> {
-    let hunt = |ways: Ways| Hunt::new(shape, ways, triangle, point, cancel);
-    let mut plain = hunt(Ways::plain());
-    let guess = plain.cut(0)?;
-    let is_small = |(cut, _): &(Cut, i32)| cut.share < LARGE_SHARE;
-    let (mut hunt, guess) = if guess.as_ref().is_some_and(is_small) {
-        (plain, guess)
-    } else {
-        let mut creased = hunt(Ways::across_creases(shape, shape.triangles[triangle as usize][0]));
-        let other = creased.cut(0)?;
-        match is_preferred(other.as_ref(), guess.as_ref()) {
-            true => (creased, other),
-            false => (plain, guess),
-        }
+    let plain = || Hunt::new(shape, Ways::plain(), triangle, point, cancel);
+    let creased = || {
+        let ways = Ways::across_creases(shape, shape.triangles[triangle as usize][0]);
+        Hunt::new(shape, ways, triangle, point, cancel)
     };
-    let found = if up > 0 { hunt.cut(up)? } else { guess };
+    let mut hunt = plain();
+    let mut guess = hunt.cut(0)?;
+    let is_small = |(cut, _): &(Cut, i32)| cut.share < LARGE_SHARE;
+    let mut other = None;
+    if !guess.as_ref().is_some_and(is_small) {
+        let mut across = creased();
+        let preferred = across.cut(0)?;
+        if is_preferred(preferred.as_ref(), guess.as_ref()) {
+            (guess, hunt, across) = (preferred, across, hunt);
+        }
+        other = Some(across);
+    }
+    let mut found = if up == 0 { guess } else { hunt.cut(up)? };
+    if let Some((_, place)) = found.as_ref().filter(|(_, place)| *place < up) {
+        let rest = up - place;
+        let farther = farther(&mut other.unwrap_or_else(creased), found.as_ref(), rest)?;
+        found = farther.or(found);
+    }
     let Some((cut, up)) = found else { return Ok(None) };
     let joint = cut.joint(&mut DistanceSearch::default(), shape);
     Ok(joint.map(|joint| Joint { up, ..joint }))
+}
+
+/// The joint that is `rest` candidates farther than the last one by other ways: theirs count beyond it, because a neck
+/// that is as wide as its head shows in its creases alone. If there are fewer, the last of them; `None` without any.
+fn farther(hunt: &mut Hunt<'_>, last: Option<&(Cut, i32)>, rest: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
+    let Some((last, place)) = last else { return Ok(None) };
+    let (mut share, mut found) = (last.share, None);
+    let mut count = 0;
+    for up in 0.. {
+        let Some((cut, _)) = hunt.cut(up)?.filter(|(_, at)| *at == up) else {
+            break;
+        };
+        if cut.share >= FARTHER * share {
+            count += 1;
+            share = cut.share;
+            found = Some((cut, place + count));
+            if count == rest {
+                break;
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// Returns true if a joint by ways that are longer across creases is better than the plain one: its limb is not a detail,
