@@ -284,6 +284,25 @@ impl FolderBrowser {
         self.is_entered = false;
     }
 
+    /// Takes the name as a person types it. Typing replaces the part before the extension, so that another format's
+    /// extension may come before the one that was there, which it then replaces.
+    pub fn type_name(&mut self, typed: String) {
+        let extension = |name: &str| {
+            Path::new(name)
+                .extension()
+                .map(|own| own.to_string_lossy().into_owned())
+        };
+        let is_format = |own: &String| self.endings.iter().any(|ending| ending.eq_ignore_ascii_case(own));
+        let rest = |name: &str| {
+            let own = extension(&self.name).filter(is_format)?;
+            Some(name.strip_suffix(&own)?.strip_suffix('.')?.to_owned())
+        };
+        let typed_format = rest(&typed).and_then(|stem| extension(&stem)).filter(is_format);
+        let had_format = rest(&self.name).and_then(|stem| extension(&stem)).filter(is_format);
+        let replaced = rest(&typed).filter(|_| typed_format.is_some() && had_format.is_none());
+        self.set_name(replaced.unwrap_or(typed));
+    }
+
     /// The extension that decides the format of the saved file, one of [`Self::endings`]; `None` if the name has another
     /// one.
     pub fn format(&self) -> Option<&'static str> {

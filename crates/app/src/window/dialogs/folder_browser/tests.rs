@@ -316,3 +316,23 @@ fn a_chosen_format_replaces_the_ending_of_another_one_and_nothing_else() {
     browser.set_name("dog".to_owned());
     assert_eq!(browser.format(), Some("obj"));
 }
+
+#[test]
+fn a_typed_extension_of_a_format_replaces_the_one_that_typing_leaves() {
+    let endings = &["glb", "obj", "ply"];
+    for (name, typed, wanted) in [
+        ("cat.obj", "dog.obj", "dog.obj"),
+        ("cat.obj", "dog.g.obj", "dog.g.obj"),
+        ("cat.obj", "dog.glb.obj", "dog.glb"),
+        ("cat.obj", "dog.v2.PLY.obj", "dog.v2.PLY"),
+        ("cat.obj", "dog.v2.obj", "dog.v2.obj"),
+        ("cat.obj", "dog.ply", "dog.ply"),
+        // It was there before.
+        ("cat.glb.obj", "dog.glb.obj", "dog.glb.obj"),
+        ("cat", "dog.glb.obj", "dog.glb.obj"),
+    ] {
+        let mut browser = FolderBrowser::new(Asked::ToSave, endings, &Path::new("/a").join(name), Vec::new(), None);
+        browser.type_name(typed.to_owned());
+        assert_eq!(browser.name(), wanted, "{name}, {typed}");
+    }
+}

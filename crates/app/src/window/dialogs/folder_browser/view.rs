@@ -338,7 +338,7 @@ fn name(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
             format(ui, browser);
             let (field, typed) = field(ui, id, "Name", browser.name(), selected, false);
             if field.changed() {
-                browser.set_name(typed);
+                browser.type_name(typed);
             }
             field.labelled_by(label.id);
         });
