@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pliant_engine::files::shown;
 
-use super::typed_path::{candidates, completed, folder_of, split, text_of};
+use super::typed_path::{begun_anew, candidates, completed, folder_of, split, text_of};
 use crate::window::files::listing::{Column, Entry, Order, shown_entries};
 
 /// The purpose of asking for a file.
@@ -241,8 +241,8 @@ impl FolderBrowser {
     }
 
     /// Takes the present typed path: up to its last separator it is the shown folder, and the rest filters.
-    pub fn set_path(&mut self, typed: String) {
-        self.path = typed;
+    pub fn set_path(&mut self, typed: &str) {
+        begun_anew(typed).clone_into(&mut self.path);
         self.problem = None;
         self.is_entered = false;
         let head = split(&self.path).0;

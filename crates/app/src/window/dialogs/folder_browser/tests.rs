@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime};
 
 use super::browser::{Asked, Contents, FolderBrowser};
 use super::row::size;
-use super::typed_path::{candidates, completed};
+use super::typed_path::{begun_anew, candidates, completed};
 use crate::window::files::listing::{Column, Entry, Order, read, shown_entries};
 
 const NAMES: [&str; 9] = [
@@ -160,12 +160,12 @@ fn a_path_typed_letter_by_letter_leads_where_it_leads_at_once_and_one_step_back_
     let mut browser = browser(Asked::ToOpen, "/a");
     let path = "/x/y z/../w/fi";
     for end in 1..=path.len() {
-        browser.set_path(path[..end].to_owned());
+        browser.set_path(&path[..end]);
     }
     assert_eq!(browser.folder(), Path::new("/x/w"));
     browser.go_back();
     assert_eq!(browser.folder(), Path::new("/a"));
-    browser.set_path("~/scans/".to_owned());
+    browser.set_path("~/scans/");
     assert_eq!(browser.folder(), Path::new("/home/me/scans"));
 }
 
@@ -173,7 +173,7 @@ fn a_path_typed_letter_by_letter_leads_where_it_leads_at_once_and_one_step_back_
 fn enter_before_a_folder_was_read_waits_and_what_another_folder_holds_is_not_shown() {
     let mut browser = browser(Asked::ToOpen, "/a");
     let first = browser.take_wanted().unwrap();
-    browser.set_path("/b/scan 9.ply".to_owned());
+    browser.set_path("/b/scan 9.ply");
     browser.enter();
     assert_eq!(browser.take_found(), None);
     browser.set_contents(&first, Ok(entries("/a", &NAMES)));
@@ -193,7 +193,7 @@ fn enter_goes_into_folders_opens_what_is_typed_or_chosen_and_says_what_is_missin
         (None, Path::new("/a")),
         "nothing is chosen yet"
     );
-    browser.set_path("/a/bo".to_owned());
+    browser.set_path("/a/bo");
     browser.enter();
     assert_eq!(browser.folder(), Path::new("/a/Bones"));
     answer(&mut browser, &["leg.ply", "arm.ply", "old/"]);
@@ -205,12 +205,12 @@ fn enter_goes_into_folders_opens_what_is_typed_or_chosen_and_says_what_is_missin
         Some("/a/Bones/arm.ply".into()),
         "folders come first"
     );
-    browser.set_path("/a/Bones/none.ply".to_owned());
+    browser.set_path("/a/Bones/none.ply");
     browser.enter();
     assert_eq!(browser.take_found(), None);
     assert!(browser.problem().unwrap().contains("none.ply"));
     // An entry that is hidden or of another kind opens by its full name.
-    browser.set_path("/a/notes.txt".to_owned());
+    browser.set_path("/a/notes.txt");
     answer(&mut browser, &NAMES);
     browser.enter();
     assert_eq!(browser.take_found(), Some("/a/notes.txt".into()));
@@ -334,5 +334,22 @@ fn a_typed_extension_of_a_format_replaces_the_one_that_typing_leaves() {
         let mut browser = FolderBrowser::new(Asked::ToSave, endings, &Path::new("/a").join(name), Vec::new(), None);
         browser.type_name(typed.to_owned());
         assert_eq!(browser.name(), wanted, "{name}, {typed}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_whole_path_typed_behind_the_shown_folder_begins_anew() {
+    for (typed, wanted) in [
+        ("/a/b/c.ply", "/a/b/c.ply"),
+        ("/a/b//", "/"),
+        ("/a/b//d/c.ply", "/d/c.ply"),
+        ("/a//b//d", "/d"),
+        ("/a/b/~/c.ply", "~/c.ply"),
+        ("/a/b/~c.ply", "/a/b/~c.ply"),
+        ("~/c", "~/c"),
+        ("", ""),
+    ] {
+        assert_eq!(begun_anew(typed), wanted, "{typed}");
     }
 }

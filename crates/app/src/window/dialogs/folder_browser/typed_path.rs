@@ -11,6 +11,21 @@ pub fn split(typed: &str) -> (&str, &str) {
     typed.split_at(end)
 }
 
+/// The text from the place on where it begins anew: a whole path or the home folder that is typed behind a folder, as in
+/// `/a//b/c` and `/a/~/c`.
+pub fn begun_anew(typed: &str) -> &str {
+    let begins = |rest: &&str| {
+        let of_home = rest
+            .strip_prefix('~')
+            .is_some_and(|rest| rest.starts_with(is_separator));
+        of_home || Path::new(rest).is_absolute()
+    };
+    let behind = typed
+        .match_indices(is_separator)
+        .map(|(place, found)| &typed[place + found.len()..]);
+    behind.filter(begins).last().unwrap_or(typed)
+}
+
 /// The path that the folder's part of a text means: `~` is the home folder, and a part that does not begin at a root
 /// begins at `folder`. `..` is the folder above.
 pub fn folder_of(head: &str, folder: &Path, home: Option<&Path>) -> PathBuf {

@@ -92,7 +92,7 @@ fn keys(ui: &mut egui::Ui, browser: &mut FolderBrowser, ids: [Id; 2]) {
         && let Some(completed) = browser.completion()
         && is_pressed(Key::Tab)
     {
-        browser.set_path(completed);
+        browser.set_path(&completed);
     }
 }
 
@@ -117,7 +117,7 @@ fn top(ui: &mut egui::Ui, browser: &mut FolderBrowser, id: Id, is_new: bool) {
         });
         let (field, typed) = field(ui, id, "Path", browser.path(), selected, takes_tab);
         if field.changed() {
-            browser.set_path(typed);
+            browser.set_path(&typed);
         }
         field.on_hover_text("Type to filter the list; Tab completes. ~ is your home folder.");
     });
