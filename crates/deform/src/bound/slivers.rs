@@ -57,8 +57,6 @@ struct Patch {
     /// True for vertices that a sliver may move.
     may_move: Vec<bool>,
     triangles: Vec<[u32; 3]>,
-    /// True for triangles whose normal opposes the others at rest, or that have none.
-    is_exempt: Vec<bool>,
     /// The triangles at each vertex.
     around: Lists,
 }
@@ -79,10 +77,12 @@ impl Slivers {
             return None;
         }
         let mut is_near = vec![false; surface.triangles.len()];
+        let mut is_passed = vec![false; surface.positions.len()];
         let mut ring: Vec<u32> = found.iter().map(|sliver| sliver.0).collect();
         for _ in 0..RINGS {
             let corners = ring.iter().flat_map(|&t| surface.triangles[t as usize]);
-            let faces = corners.flat_map(|v| topology.faces(v, &surface.triangles));
+            let new = corners.filter(|v| !std::mem::replace(&mut is_passed[v.index()], true));
+            let faces = new.flat_map(|v| topology.faces(v, &surface.triangles));
             ring = faces
                 .filter(|&t| !std::mem::replace(&mut is_near[t as usize], true))
                 .collect();
@@ -106,17 +106,13 @@ impl Slivers {
             .zip(&triangles)
             .flat_map(|(number, corners)| corners.map(|v| (v, number)));
         let around = Lists::of(vertices.len(), at_corners);
-        let mut patch = Patch {
+        let patch = Patch {
             rest: vertices.iter().map(|&v| surface.positions[v as usize]).collect(),
             may_move: vertices.iter().map(|&v| may_move(SurfaceVertex(v))).collect(),
-            is_exempt: vec![false; triangles.len()],
             vertices,
             triangles,
             around,
         };
-        let rest = |v: u32| patch.rest[v as usize];
-        let is_exempt = |t: usize| patch.opposes(t as u32, rest) || !has_normal(patch.triangles[t].map(rest));
-        patch.is_exempt = (0..patch.triangles.len()).into_par_iter().map(is_exempt).collect();
         let slivers = found.iter().map(|&(number, height, apex)| {
             let triangle = near.partition_point(|&other| other < number) as u32;
             Sliver {
@@ -126,7 +122,7 @@ impl Slivers {
                 beside: patch.beside(triangle),
             }
         });
-        let slivers: Vec<Sliver> = slivers.filter(|own| !patch.is_exempt[own.triangle as usize]).collect();
+        let slivers: Vec<Sliver> = slivers.filter(|own| !patch.is_exempt(own.triangle)).collect();
         (!slivers.is_empty()).then_some(Self { slivers, patch })
     }
 
@@ -190,8 +186,14 @@ impl Patch {
         self.area(triangle, at).dot(self.others(triangle, at)) < 0.0
     }
 
+    /// Returns true for a triangle whose normal opposes the others at rest, or that has none.
+    fn is_exempt(&self, triangle: u32) -> bool {
+        let rest = |v: u32| self.rest[v as usize];
+        self.opposes(triangle, rest) || !has_normal(self.triangles[triangle as usize].map(rest))
+    }
+
     fn is_turned(&self, triangle: u32, at: impl Fn(u32) -> DVec3 + Copy) -> bool {
-        !self.is_exempt[triangle as usize] && self.opposes(triangle, at)
+        self.opposes(triangle, at) && !self.is_exempt(triangle)
     }
 
     /// The number of turned triangles among those to which a move of `vertices` matters.
