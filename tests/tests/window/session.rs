@@ -640,6 +640,12 @@ fn the_palette_offers_what_can_be_done_now_first() {
     session.palette("lattice");
     session.key(Key::Enter, Modifiers::NONE);
     assert_eq!(session.harness.state().editor().document().method().name(), "lattice");
+    // Before any typing, too: Enter is not refused.
+    session.palette("");
+    assert!(session.harness.query_by_label("Command").is_some());
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.run_steps(2);
+    assert!(session.harness.query_by_label("Command").is_none());
 }
 
 #[test]

@@ -176,9 +176,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         .chain(files)
         .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), entry.keywords, &typed)?, entry)))
         .collect();
-    // Before any typing the order is that of the list.
-    let is_sought = !typed.is_empty();
-    found.sort_by_key(|(rank, entry)| (*rank, is_sought && entry.obstacle.is_some()));
+    found.sort_by_key(|(rank, entry)| (*rank, entry.obstacle.is_some()));
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
