@@ -27,7 +27,7 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
             2,
             "Go on",
             "Ctrl twists a limb and Shift scales it while you drag. Drag above or below the joint for the next one; \
-             Symmetry in the bar above bends both sides.",
+             Symmetry (Shift+X) bends both sides.",
         )
     } else if view.handles.is_empty() {
         (
