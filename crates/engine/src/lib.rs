@@ -51,6 +51,7 @@
 
 mod animate;
 mod apply;
+mod binding;
 mod coloured;
 pub mod control_mesh;
 mod difference;
@@ -70,6 +71,7 @@ mod path_text;
 pub mod report;
 pub mod saving;
 mod sequence;
+mod solution;
 pub mod stitching;
 mod transfer;
 pub mod watch;
@@ -77,7 +79,8 @@ pub mod watch;
 pub use animate::{
     Animate, Animated, AnimationReport, MORPH_TOLERANCE, MorphReport, animate, animation_path, stage_animation,
 };
-pub use apply::{Apply, Prepared, Solved, apply, bind, check_bends, order, prepare, solved};
+pub use apply::{Apply, Solved, apply, solved};
+pub use binding::{Prepared, bind, check_bends, order, prepare};
 pub use difference::{Compared, differences};
 pub use edit::read_edit;
 pub use edit_job::EditJob;

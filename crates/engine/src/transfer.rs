@@ -8,7 +8,7 @@ use pliant_io::{MorphDeltas, MorphTarget};
 use pliant_mesh::{Drawn, Model, SurfaceVertex, WeldOptions};
 use serde_json::Value;
 
-use crate::apply::refused;
+use crate::binding::refused;
 use crate::examples::positions_in_pose;
 use crate::files::{self, Destination, Staging, shown};
 use crate::loading::{Loaded, check_not_empty, load, open};

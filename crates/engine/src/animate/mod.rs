@@ -20,7 +20,7 @@ pub(crate) use self::kind::check_output;
 pub use self::report::{AnimationReport, MorphReport};
 pub(crate) use self::writer::{AnimationFiles, AnimationWriter, MovedVertices};
 use crate::EngineError;
-use crate::apply::{Prepared, check_bends, prepare};
+use crate::binding::{Prepared, check_bends, prepare};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::{NewFile, Staged, Staging};
 use crate::flow::with_dye;

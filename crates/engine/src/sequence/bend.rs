@@ -13,7 +13,7 @@ use super::bent::{Bent, Unbent};
 use super::held::{Held, HeldShapes, Shapes};
 use super::leaders::Leaders;
 use crate::EngineError;
-use crate::apply::bind;
+use crate::binding::bind;
 use crate::watch::Watch;
 
 /// The data that all frames share.

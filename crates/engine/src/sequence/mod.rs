@@ -40,7 +40,7 @@ use self::run::{Run, To};
 use self::source::Source;
 use crate::EngineError;
 use crate::animate::{AnimationFiles, MORPH_TOLERANCE, MovedVertices};
-use crate::apply::{check_bends, order};
+use crate::binding::{check_bends, order};
 use crate::edit_job::{EditJob, with_keys};
 use crate::files::Staging;
 use crate::frames::{ExistingFrames, Frames, checked_places};

@@ -20,10 +20,10 @@ pub fn begun_anew(typed: &str) -> &str {
             .is_some_and(|rest| rest.starts_with(is_separator));
         of_home || Path::new(rest).is_absolute()
     };
-    let behind = typed
+    let mut behind = typed
         .match_indices(is_separator)
         .map(|(place, found)| &typed[place + found.len()..]);
-    behind.filter(begins).last().unwrap_or(typed)
+    behind.rfind(begins).unwrap_or(typed)
 }
 
 /// The path that the folder's part of a text means: `~` is the home folder, and a part that does not begin at a root
