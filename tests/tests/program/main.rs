@@ -16,6 +16,7 @@ mod first_pages;
 mod flow;
 mod hostile;
 mod identity;
+mod limbs;
 mod neighbours;
 mod normals;
 mod outputs;
