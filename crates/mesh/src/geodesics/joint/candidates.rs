@@ -24,10 +24,11 @@ const GAP_RADII: f64 = 4.8;
 /// A limb that the guess cuts off has at least this share of the area, so that a finger leads to its hand.
 const LEAST_GUESS: f64 = 0.005;
 
-/// A ring that shows as a joint is across a palm if it is wider by this ratio than a later one within so many of its own
-/// radii.
-const NARROWS_LATER: f64 = 1.2;
-const LATER_RADII: f64 = 4.0;
+/// A ring that shows as a joint is across a palm if it is wider by this ratio than one within [`PALM_RADII`] beyond it.
+const PALM_OVER_WRIST: f64 = 1.2;
+
+/// A wrist is within so many radii of a palm's ring.
+const PALM_RADII: f64 = 4.0;
 
 /// A limb that is this many times wider than its narrowest ring is no longer the same limb.
 const WIDENED: f64 = 2.2;
@@ -69,17 +70,17 @@ const CLEAR_RADII: f64 = 0.25;
 pub(super) struct Candidates {
     /// Their levels, ascending.
     levels: Vec<usize>,
-    /// The place of the likeliest one.
-    guess: usize,
+    /// The place of the likeliest one; `None` if the search ended before it.
+    guess: Option<usize>,
 }
 
 impl Candidates {
     /// The level of the candidate `up` places from the guess, or of the last one on that side, and its number of places.
     /// `None` if there is none.
     pub(super) fn at(&self, up: i32) -> Option<(usize, i32)> {
-        let last = self.levels.len().checked_sub(1)? as i32;
-        let place = (self.guess as i32).saturating_add(up).clamp(0, last);
-        Some((self.levels[place as usize], place - self.guess as i32))
+        let (last, guess) = (self.levels.len().checked_sub(1)? as i32, self.guess? as i32);
+        let place = guess.saturating_add(up).clamp(0, last);
+        Some((self.levels[place as usize], place - guess))
     }
 }
 
@@ -94,28 +95,29 @@ pub(super) fn candidates(
     is_whole: bool,
 ) -> Candidates {
     let levels = levels(rings, corners, source, least, is_whole);
-    let shown = joints(rings);
-    let is_palm = |level: &usize| shown.contains(level) && narrows_later(rings, *level);
-    let is_likely = |level: &usize| rings.limb_share(*level) >= LEAST_GUESS && !is_palm(level);
-    let likely = levels.iter().position(is_likely);
-    match likely.or(is_whole.then_some(0)) {
-        Some(guess) => Candidates { levels, guess },
-        // The likely one is beyond the search's limit.
-        None => Candidates {
-            levels: Vec::new(),
-            guess: 0,
-        },
+    let joints = joints(rings);
+    let is_palm = |level: usize| joints.contains(&level) && narrows_soon(rings, level);
+    let is_likely = |&level: &usize| rings.limb_share(level) >= LEAST_GUESS && !is_palm(level);
+    let sees_enough = |place: &usize| is_whole || rings.radii().last() >= Some(&palm_end(rings, levels[*place]));
+    let likely = levels.iter().position(is_likely).filter(sees_enough);
+    Candidates {
+        guess: likely.or(is_whole.then_some(0)),
+        levels,
     }
 }
 
-/// Returns true if the limb is clearly narrower not far beyond a level.
-fn narrows_later(rings: &Rings, level: usize) -> bool {
-    let length = rings.lengths()[level];
-    let end = rings.radii()[level] + LATER_RADII * length / TAU;
+/// The distance from the tip within which the wrist is if a level is across a palm.
+fn palm_end(rings: &Rings, level: usize) -> f64 {
+    rings.radii()[level] + PALM_RADII * rings.lengths()[level] / TAU
+}
+
+/// Returns true if the limb is clearly narrower soon beyond a level.
+fn narrows_soon(rings: &Rings, level: usize) -> bool {
+    let (length, end) = (rings.lengths()[level], palm_end(rings, level));
     let later = (level..rings.lengths().len()).take_while(|&later| rings.radii()[later] <= end);
     later
         .map(|later| rings.lengths()[later])
-        .any(|later| later > 0.0 && NARROWS_LATER * later < length)
+        .any(|later| later > 0.0 && PALM_OVER_WRIST * later < length)
 }
 
 /// The levels of the candidates, ascending.

@@ -57,8 +57,8 @@ const LESS_NARROW: f64 = 2.0;
 const FARTHER: f64 = 1.15;
 
 /// The joint between a point in a triangle and the body, which has two fifths of the component's area or more, or less
-/// if the limb is the head of a bust; `None`
-/// if no ring around the point's side is clearly shorter than that of a disc, as on a ball or a sheet.
+/// if the limb is the head of a bust; `None` if no ring around the point's side is clearly shorter than that of a disc, as
+/// on a ball or a sheet.
 ///
 /// `up` chooses the joint that is so many candidates farther from the limb's tip than the guess, or nearer to it if it is
 /// negative. The guess is the first one beyond the point whose limb is more than a finger. If there are fewer, the last one
@@ -94,36 +94,31 @@ pub fn joint_of(
         other = Some(across);
     }
     let mut found = if up == 0 { guess } else { hunt.cut(up)? };
-    if let Some((_, place)) = found.as_ref().filter(|(_, place)| *place < up) {
-        let rest = up - place;
-        let farther = farther(&mut other.unwrap_or_else(creased), found.as_ref(), rest)?;
-        found = farther.or(found);
+    if let Some((last, place)) = found.as_mut().filter(|(_, place)| *place < up) {
+        let mut other = other.unwrap_or_else(creased);
+        while *place < up
+            && let Some(farther) = farther(&mut other, last.share)?
+        {
+            (*last, *place) = (farther, *place + 1);
+        }
     }
     let Some((cut, up)) = found else { return Ok(None) };
     let joint = cut.joint(&mut DistanceSearch::default(), shape);
     Ok(joint.map(|joint| Joint { up, ..joint }))
 }
 
-/// The joint that is `rest` candidates farther than the last one by other ways: theirs count beyond it, because a neck
-/// that is as wide as its head shows in its creases alone. If there are fewer, the last of them; `None` without any.
-fn farther(hunt: &mut Hunt<'_>, last: Option<&(Cut, i32)>, rest: i32) -> Result<Option<(Cut, i32)>, Cancelled> {
-    let Some((last, place)) = last else { return Ok(None) };
-    let (mut share, mut found) = (last.share, None);
-    let mut count = 0;
+/// The first candidate whose limb is clearly larger than one with this share of the area. By other ways it is a farther
+/// one: a neck that is as wide as its head shows in its creases alone.
+fn farther(hunt: &mut Hunt<'_>, share: f64) -> Result<Option<Cut>, Cancelled> {
     for up in 0.. {
-        let Some((cut, _)) = hunt.cut(up)?.filter(|(_, at)| *at == up) else {
+        let Some((cut, _)) = hunt.cut(up)?.filter(|(_, place)| *place == up) else {
             break;
         };
         if cut.share >= FARTHER * share {
-            count += 1;
-            share = cut.share;
-            found = Some((cut, place + count));
-            if count == rest {
-                break;
-            }
+            return Ok(Some(cut));
         }
     }
-    Ok(found)
+    Ok(None)
 }
 
 /// Returns true if a joint by ways that are longer across creases is better than the plain one: its limb is not a detail,
