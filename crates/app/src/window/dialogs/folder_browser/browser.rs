@@ -284,23 +284,29 @@ impl FolderBrowser {
         self.is_entered = false;
     }
 
-    /// Takes the name as a person types it. Typing replaces the part before the extension, so that another format's
-    /// extension may come before the one that was there, which it then replaces.
+    /// Takes the name as a person types it. Typing replaces the part before the extension, so a format's extension may come
+    /// before the one that was there, which it then replaces.
     pub fn type_name(&mut self, typed: String) {
-        let extension = |name: &str| {
-            Path::new(name)
-                .extension()
-                .map(|own| own.to_string_lossy().into_owned())
+        let stem = |name: &str| {
+            let ending = self.name.rsplit_once('.').map(|(_, ending)| ending)?;
+            self.ending_of(ending)?;
+            Some(name.strip_suffix(ending)?.strip_suffix('.')?.to_owned())
         };
-        let is_format = |own: &String| self.endings.iter().any(|ending| ending.eq_ignore_ascii_case(own));
-        let rest = |name: &str| {
-            let own = extension(&self.name).filter(is_format)?;
-            Some(name.strip_suffix(&own)?.strip_suffix('.')?.to_owned())
+        let ends_as_format = |stem: &String| {
+            stem.rsplit_once('.')
+                .is_some_and(|(_, own)| self.ending_of(own).is_some())
         };
-        let typed_format = rest(&typed).and_then(|stem| extension(&stem)).filter(is_format);
-        let had_format = rest(&self.name).and_then(|stem| extension(&stem)).filter(is_format);
-        let replaced = rest(&typed).filter(|_| typed_format.is_some() && had_format.is_none());
+        let had_both = stem(&self.name).is_some_and(|stem| ends_as_format(&stem));
+        let replaced = stem(&typed).filter(|stem| ends_as_format(stem) && !had_both);
         self.set_name(replaced.unwrap_or(typed));
+    }
+
+    /// The extension of a format, in any case.
+    fn ending_of(&self, own: &str) -> Option<&'static str> {
+        self.endings
+            .iter()
+            .copied()
+            .find(|ending| ending.eq_ignore_ascii_case(own))
     }
 
     /// The extension that decides the format of the saved file, one of [`Self::endings`]; `None` if the name has another
@@ -310,10 +316,7 @@ impl FolderBrowser {
         let own = own
             .map(|ending| ending.to_string_lossy().into_owned())
             .or(self.ending.clone())?;
-        self.endings
-            .iter()
-            .copied()
-            .find(|ending| ending.eq_ignore_ascii_case(&own))
+        self.ending_of(&own)
     }
 
     /// Chooses the format by its extension, which replaces that of another format in the name.

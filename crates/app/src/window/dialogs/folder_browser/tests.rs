@@ -326,6 +326,7 @@ fn a_typed_extension_of_a_format_replaces_the_one_that_typing_leaves() {
         ("cat.obj", "dog.glb.obj", "dog.glb"),
         ("cat.obj", "dog.v2.PLY.obj", "dog.v2.PLY"),
         ("cat.obj", "dog.v2.obj", "dog.v2.obj"),
+        ("cat.obj", "dog.obj.obj", "dog.obj"),
         ("cat.obj", "dog.ply", "dog.ply"),
         // It was there before.
         ("cat.glb.obj", "dog.glb.obj", "dog.glb.obj"),
