@@ -48,6 +48,7 @@ mod strength;
 mod strength_keys;
 mod symmetry;
 mod tips;
+mod twist_and_scale;
 mod view;
 mod whole_limb;
 mod work_pose;
