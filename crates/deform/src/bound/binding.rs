@@ -10,11 +10,12 @@ use super::slivers::Slivers;
 use super::{Bound, RigidParts};
 use crate::budget::bytes_of;
 use crate::handles::residual::HandleResidual;
-use crate::handles::turns::TurnLimit;
+use crate::handles::turns::{TurnLimit, ends_among};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::needs::Solve;
 use crate::region::follow::followers;
+use crate::region::limbs::ends_of_limbs;
 use crate::rigid::Softened;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Budget, HandleFit, Needs, Ordering, Problem, ReusableFactor, Warning};
@@ -217,10 +218,12 @@ impl Bound {
         let turn_limit = turn_limit.map(|followed| TurnLimit {
             method: declaration.name,
             followed,
-            is_held: partition.held.contains(&true),
-            bends: match implementation.needs() {
-                Needs::Points => vec![true; handles.len()],
-                Needs::Surface { .. } => partition.handles_that_bend(&boundary),
+            ends: match implementation.needs() {
+                Needs::Points => {
+                    let all: Vec<u16> = (0..handles.len() as u16).collect();
+                    ends_among(&all, partition.held.contains(&true)).collect()
+                }
+                Needs::Surface { .. } => ends_of_limbs(&boundary),
             },
         });
         let bends_slivers = matches!(

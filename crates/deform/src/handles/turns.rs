@@ -66,44 +66,47 @@ const NARROWS_NECKS: &str = "narrows the limb at thin places";
 pub(crate) struct TurnLimit {
     pub method: &'static str,
     pub followed: Followed,
-    /// True if something is fixed.
-    pub is_held: bool,
-    /// For each handle, false if it holds parts of the surface as a whole, so that no limb ends at it.
-    pub bends: Vec<bool>,
+    /// The ends between which a limb bends.
+    pub ends: Vec<Ends>,
+}
+
+/// A handle and what bounds a limb on its other side: another handle, or `None` for what is fixed.
+pub(crate) type Ends = (u16, Option<u16>);
+
+/// Every two of these handles, which ascend, and each of them with what is fixed.
+pub(crate) fn ends_among(handles: &[u16], is_held: bool) -> impl Iterator<Item = Ends> + '_ {
+    let fixed = is_held.then_some(None);
+    handles.iter().enumerate().flat_map(move |(place, handle)| {
+        let others = handles[..place].iter().copied().map(Some);
+        others.chain(fixed).map(move |other| (*handle, other))
+    })
 }
 
 /// The warning waits for this much more than the limit, so that a turn by the limit itself gives none.
 const ROOM_DEGREES: f64 = 5.0;
 
 impl TurnLimit {
-    /// A sentence about two turns that differ by more than the method's limit.
-    pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
-        self.warning_of(handles, motions, &vec![true; handles.len()])
-    }
-
-    /// The same about the handles that are `counted`.
-    pub fn warning_of(&self, handles: &[Handle], motions: &[Motion], counted: &[bool]) -> Option<Warning> {
+    /// A sentence about two ends whose turns differ by more than the method's limit. Handles that are not `counted`
+    /// have no part in it.
+    pub fn warning(&self, handles: &[Handle], motions: &[Motion], counted: impl Fn(u16) -> bool) -> Option<Warning> {
         let Followed {
             most_degrees,
             beyond,
             necks_degrees,
         } = self.followed;
-        let turn = |(handle, motion): (&Handle, &Motion)| Polar::of(&handle.linear(motion)).turn_rad;
-        let own = handles.iter().zip(motions).enumerate();
-        let turns: Vec<(usize, DQuat)> = own
-            .filter(|(number, _)| counted[*number] && self.bends[*number])
-            .map(|(number, own)| (number, DQuat::from_scaled_axis(turn(own))))
-            .collect();
-        let fixed = self.is_held.then_some((usize::MAX, DQuat::IDENTITY));
+        let turn = |number: u16| {
+            let (handle, motion) = (&handles[usize::from(number)], &motions[usize::from(number)]);
+            DQuat::from_scaled_axis(Polar::of(&handle.linear(motion)).turn_rad)
+        };
         let mut worst = (0.0, 0);
-        for (place, (number, turn)) in turns.iter().enumerate() {
-            for (_, other) in turns[..place].iter().chain(&fixed) {
-                // The angle's cosine would lose small angles.
-                let between = (*turn * other.conjugate()).to_scaled_axis().length();
-                let degrees = between.min(std::f64::consts::TAU - between).to_degrees();
-                if degrees > worst.0 {
-                    worst = (degrees, *number);
-                }
+        let own = |ends: &&Ends| counted(ends.0) && ends.1.is_none_or(&counted);
+        for (number, other) in self.ends.iter().filter(own) {
+            let other = other.map_or(DQuat::IDENTITY, turn);
+            // The angle's cosine would lose small angles.
+            let between = (turn(*number) * other.conjugate()).to_scaled_axis().length();
+            let degrees = between.min(std::f64::consts::TAU - between).to_degrees();
+            if degrees > worst.0 {
+                worst = (degrees, usize::from(*number));
             }
         }
         let (degrees, number) = worst;

@@ -5,6 +5,7 @@ pub(crate) mod constraints;
 pub(crate) mod demands;
 pub(crate) mod follow;
 mod images;
+pub(crate) mod limbs;
 pub(crate) mod nodes;
 mod owners;
 pub(crate) mod partition;

@@ -45,19 +45,6 @@ pub(crate) struct Partition<'a> {
 }
 
 impl<'a> Partition<'a> {
-    /// For each handle, true if the method solves for a free vertex of a component in which it has vertices.
-    pub fn handles_that_bend(&self, problem: &BoundaryProblem<'_>) -> Vec<bool> {
-        let component = |vertex: u32| problem.topology.component(SurfaceVertex(vertex)) as usize;
-        let mut bends = vec![false; problem.topology.components().len()];
-        let free = self
-            .solved
-            .iter()
-            .filter(|vertex| problem.roles[**vertex as usize] == Role::Free);
-        free.for_each(|vertex| bends[component(*vertex)] = true);
-        let bends = |vertices: &Vec<u32>| vertices.iter().any(|vertex| bends[component(*vertex)]);
-        self.handles.iter().map(bends).collect()
-    }
-
     /// Sorts the vertices of a problem that was [checked](check).
     pub fn of(
         problem: &BoundaryProblem<'a>,

@@ -270,3 +270,27 @@ fn the_smooth_energy_says_from_where_on_folds_flatten_a_limb() {
     );
     assert!(folded(&method, 180.0) < 0.7 && folded(&named("poisson"), 180.0) > 0.7);
 }
+
+#[test]
+fn a_hand_counts_against_its_forearm_and_not_against_the_shoulder() {
+    let about_limb = |degrees: f64| DAffine3::from_rotation_z(degrees.to_radians());
+    // A handle all round the limb bounds two limbs; one on a side of it leaves one limb from end to end.
+    for (around, turns, warns) in [
+        (true, [150.0, 75.0], false),
+        (true, [-150.0, 0.0], true),
+        (true, [150.0, 150.0], true),
+        (false, [150.0, 75.0], true),
+    ] {
+        let mut scene = Scene::new(shapes::tube(10, 16, 5.0))
+            .with(Role::Fixed, |p| p.z < 0.5)
+            .with(Role::Handle(0), |p| p.z > 4.5)
+            .with(Role::Handle(1), |p| (2.0..3.0).contains(&p.z) && (around || p.x > 0.0));
+        for name in ["bilaplacian", "frames", "wrinkles"] {
+            scene.method = named(name);
+            let mut bound = scene.bind();
+            bound.set_targets(&turns.map(about_limb)).unwrap();
+            let said = bound.warnings().iter().any(|said| said.contains("turns by"));
+            assert_eq!(said, warns, "{name}, all round: {around}, {turns:?}");
+        }
+    }
+}
