@@ -3,7 +3,7 @@
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
 use crate::budget::{ORDERING_ROW, bytes_of};
-use crate::region::boundary_problem::BoundaryProblem;
+use crate::region::boundary_problem::{BoundaryProblem, handle_count};
 use crate::{Attachment, BindError, Budget, Constraints, Loose, Method, Ordering, Role};
 
 /// Everything that a deformation depends on, except the handles' transforms.
@@ -53,15 +53,11 @@ impl<'a> Problem<'a> {
         stiffness: &'a [f64],
         method: &'a Method,
     ) -> Self {
-        let number = |role: &Role| match role {
-            Role::Handle(number) => Some(usize::from(*number) + 1),
-            Role::Fixed | Role::Free => None,
-        };
         Self {
             surface,
             topology,
             roles,
-            handle_count: roles.iter().filter_map(number).max().unwrap_or(0),
+            handle_count: handle_count(roles),
             stiffness,
             constraints: Constraints::default(),
             loose: Loose::default(),
@@ -78,14 +74,11 @@ impl<'a> Problem<'a> {
             _ => None,
         };
         BoundaryProblem {
-            surface: self.surface,
-            topology: self.topology,
-            roles: self.roles,
             handle_count: self.handle_count,
-            stiffness: self.stiffness,
             constraints: self.constraints,
             loose: self.loose,
             examples,
+            ..BoundaryProblem::new((self.surface, self.topology), self.roles, self.stiffness)
         }
     }
 

@@ -29,17 +29,18 @@ pub(crate) fn on_clusters<T>(
     bind: impl FnOnce(&BoundaryProblem, Partition, &[Handle]) -> Option<T>,
 ) -> Option<T> {
     let coarse = BoundaryProblem {
-        surface: &clusters.surface,
-        topology: &clusters.topology,
-        roles: &clusters.roles,
         handle_count: problem.handle_count,
-        stiffness: &clusters.stiffness,
         constraints: Constraints {
             soft: problem.constraints.soft,
             ..Constraints::default()
         },
         loose: Loose::Rest,
         examples,
+        ..BoundaryProblem::new(
+            (&clusters.surface, &clusters.topology),
+            &clusters.roles,
+            &clusters.stiffness,
+        )
     };
     let partition = method.partition(&coarse).ok()?;
     let handles: Vec<Handle> = handles

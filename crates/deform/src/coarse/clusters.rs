@@ -103,10 +103,10 @@ mod tests {
     use pliant_mesh::shapes;
 
     use super::Clusters;
+    use crate::Role;
     use crate::coarse::domain::{ABSENT, Domain};
     use crate::handles::Handle;
     use crate::region::boundary_problem::BoundaryProblem;
-    use crate::{Constraints, Loose, Role};
 
     #[test]
     fn clusters_keep_to_one_role_and_have_their_centre() {
@@ -125,16 +125,8 @@ mod tests {
             let roles: Vec<Role> = (0..count).map(role).collect();
             let order: Vec<u32> = (0..count).filter(|&v| role(v) == Role::Free).collect();
             let handle = Handle::new((0..count).filter(|v| v % 7 == 1).collect(), &model.surface.positions);
-            let problem = BoundaryProblem {
-                surface: &model.surface,
-                topology: &model.topology,
-                roles: &roles,
-                handle_count: 1,
-                stiffness: &vec![1.0; roles.len()],
-                constraints: Constraints::default(),
-                loose: Loose::Rest,
-                examples: None,
-            };
+            let stiffness = vec![1.0; roles.len()];
+            let problem = BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness);
             let domain = Domain::of(&model.surface, &model.topology, &order);
             let clusters = Clusters::of(&problem, &domain, &[handle], 6.0);
             assert!(clusters.centres.len() < roles.len());

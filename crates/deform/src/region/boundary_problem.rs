@@ -20,7 +20,21 @@ pub(crate) struct BoundaryProblem<'a> {
     pub examples: Option<&'a Examples>,
 }
 
-impl BoundaryProblem<'_> {
+impl<'a> BoundaryProblem<'a> {
+    /// The problem of these roles and this stiffness, with hard handles and without examples; loose components follow.
+    pub fn new((surface, topology): (&'a Surface, &'a Topology), roles: &'a [Role], stiffness: &'a [f64]) -> Self {
+        Self {
+            surface,
+            topology,
+            roles,
+            handle_count: handle_count(roles),
+            stiffness,
+            constraints: Constraints::default(),
+            loose: Loose::default(),
+            examples: None,
+        }
+    }
+
     /// The behaviour of each component if nothing holds it.
     pub fn loose_by_component(&self) -> Vec<Loose> {
         let mut loose = vec![self.loose; self.topology.components().len()];
@@ -50,4 +64,13 @@ impl BoundaryProblem<'_> {
             Some(Role::Fixed) | None => false,
         }
     }
+}
+
+/// The number of handles up to the highest one that a role names.
+pub(crate) fn handle_count(roles: &[Role]) -> usize {
+    let number = |role: &Role| match role {
+        Role::Handle(number) => Some(usize::from(*number) + 1),
+        Role::Fixed | Role::Free => None,
+    };
+    roles.iter().filter_map(number).max().unwrap_or(0)
 }

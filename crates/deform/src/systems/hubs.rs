@@ -226,7 +226,7 @@ mod tests {
     use crate::sparse::refactorisation::Refactorisation;
     use crate::systems::factored::BilaplacianSystem;
     use crate::systems::setup::{Boundaries, operator};
-    use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Role};
+    use crate::{Bilaplacian, BilaplacianOrder, Budget, Method, Ordering, Role};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.
     fn wheel(count: usize, rings: usize) -> Surface {
@@ -298,16 +298,7 @@ mod tests {
         let roles: Vec<Role> = surface.positions.iter().map(role).collect();
         let stiffness: Vec<f64> = (0..roles.len()).map(|v| 1.0 + (v % 4) as f64).collect();
         let method = Method::from(options.clone());
-        let problem = BoundaryProblem {
-            surface,
-            topology: &topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &stiffness,
-            constraints: Constraints::default(),
-            loose: Loose::Rest,
-            examples: None,
-        };
+        let problem = BoundaryProblem::new((surface, &topology), &roles, &stiffness);
         let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), &surface.positions)];
         let (progress, cancel) = (Progress::new(), Cancel::new());

@@ -115,7 +115,7 @@ mod tests {
     use crate::descent::rule::State;
     use crate::handles::Handle;
     use crate::region::boundary_problem::BoundaryProblem;
-    use crate::{Arap, ArapEnergy, Constraints, Loose, Method, Role};
+    use crate::{Arap, ArapEnergy, Method, Role};
 
     #[test]
     fn a_shape_from_which_no_step_leads_down_has_stalled_and_not_converged() {
@@ -132,16 +132,8 @@ mod tests {
                 ..Arap::default()
             };
             let method = Method::from(options.clone());
-            let problem = BoundaryProblem {
-                surface: &model.surface,
-                topology: &model.topology,
-                roles: &roles,
-                handle_count: 1,
-                stiffness: &vec![1.0; roles.len()],
-                constraints: Constraints::default(),
-                loose: Loose::Rest,
-                examples: None,
-            };
+            let stiffness = vec![1.0; roles.len()];
+            let problem = BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness);
             let (progress, cancel) = (Progress::new(), Cancel::new());
             let ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
             let partition = method.partition(&problem).unwrap();

@@ -306,7 +306,7 @@ mod tests {
     use crate::method::BindInput;
     use crate::region::boundary_problem::BoundaryProblem;
     use crate::sparse::refactorisation::Refactorisation;
-    use crate::{Constraints, Embedded, Loose, Method, Role};
+    use crate::{Embedded, Method, Role};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()
@@ -329,16 +329,7 @@ mod tests {
             ..Embedded::default()
         };
         let method = Method::from(options.clone());
-        let problem = BoundaryProblem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &stiffness,
-            constraints: Constraints::default(),
-            loose: Loose::Rest,
-            examples: None,
-        };
+        let problem = BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness);
         let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         let target = DAffine3::from_translation(DVec3::new(0.4, 0.1, 0.3)) * DAffine3::from_rotation_x(1.0);

@@ -173,7 +173,7 @@ mod tests {
     use super::{Primo, PrimoSolver};
     use crate::handles::{Handle, Motion};
     use crate::region::boundary_problem::BoundaryProblem;
-    use crate::{Constraints, Loose, Method, Role};
+    use crate::{Method, Role};
 
     /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.
     fn solver(drawn: Drawn) -> (PrimoSolver, Vec<Motion>, usize) {
@@ -191,16 +191,8 @@ mod tests {
             ..Primo::default()
         };
         let method = Method::from(options.clone());
-        let problem = BoundaryProblem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &vec![1.0; roles.len()],
-            constraints: Constraints::default(),
-            loose: Loose::Rest,
-            examples: None,
-        };
+        let stiffness = vec![1.0; roles.len()];
+        let problem = BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness);
         let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         let target =

@@ -399,7 +399,7 @@ mod tests {
     use super::Slopes;
     use crate::handles::Handle;
     use crate::region::boundary_problem::BoundaryProblem;
-    use crate::{Constraints, ExampleShape, Examples, Loose, Method, Role};
+    use crate::{Constraints, ExampleShape, Examples, Method, Role};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract() - 1.0
@@ -441,17 +441,12 @@ mod tests {
         };
         let method = Method::from(options.clone());
         let problem = BoundaryProblem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &stiffness,
             constraints: Constraints {
                 soft: &[Some(0.5)],
                 ..Constraints::default()
             },
-            loose: Loose::Rest,
             examples: Some(&examples),
+            ..BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness)
         };
         let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];

@@ -252,7 +252,7 @@ mod tests {
     use crate::numerical::sums::Field;
     use crate::region::boundary_problem::BoundaryProblem;
     use crate::sparse::refactorisation::Refactorisation;
-    use crate::{Constraints, Loose, Method, Role, SpacePrimo};
+    use crate::{Method, Role, SpacePrimo};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()
@@ -273,16 +273,8 @@ mod tests {
             ..SpacePrimo::default()
         };
         let method = Method::from(options.clone());
-        let problem = BoundaryProblem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &vec![1.0; roles.len()],
-            constraints: Constraints::default(),
-            loose: Loose::Rest,
-            examples: None,
-        };
+        let stiffness = vec![1.0; roles.len()];
+        let problem = BoundaryProblem::new((&model.surface, &model.topology), &roles, &stiffness);
         let partition = method.partition(&problem).unwrap();
         let handles = [Handle::new(partition.handles[0].clone(), positions)];
         test(
