@@ -13,7 +13,6 @@ use crate::document::{Aspect, Crease, Document, HandleId, History, SaveMark};
 use crate::format::{ExportError, export};
 use crate::jobs::{Activity, Comparison, FlowRecording, Intersections, JobKind};
 use crate::region::Rim;
-use crate::revision::Revision;
 use crate::scene_view::{ControlPoints, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
@@ -412,10 +411,5 @@ impl Editor {
         let is_ending = !(self.workspace.flow.is_still() || self.workspace.flow.is_playing());
         let is_awaiting = self.workspace.awaits_frame();
         self.gesture.is_none() && self.waiting.is_empty() && !is_ending && !is_awaiting && !is_busy()
-    }
-
-    /// The revision of the shape that jobs are stamped with, for tests of lateness.
-    pub fn shape_stamp(&self) -> Revision {
-        self.workspace.jobs.shape_revision()
     }
 }
