@@ -18,7 +18,7 @@ const SIDE_PX = 900;
 const [rest, file, output, blending] = process.argv.slice(2);
 const require = createRequire(import.meta.url);
 const three = dirname(dirname(require.resolve('three')));
-const shaders = resolve(dirname(fileURLToPath(import.meta.url)), '../../crates/render/shaders');
+const shaders = resolve(dirname(fileURLToPath(import.meta.url)), '../../shaders');
 const shader = (name) => readFileSync(join(shaders, name), 'utf8');
 
 /// The numbers in a piece of WGSL, without those in a type's name.

@@ -11,12 +11,13 @@ use pliant_tests::sources::{self, Source};
 /// The crates on which each crate may depend; `tests` and `xtask` are exempt.
 const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-assets", &[]),
+    ("pliant-shaders", &[]),
     ("pliant-mesh", &[]),
     ("pliant-io", &["pliant-mesh"]),
     ("pliant-deform", &["pliant-mesh"]),
     ("pliant-stitch", &["pliant-deform", "pliant-mesh"]),
     ("pliant-flow", &["pliant-deform", "pliant-mesh"]),
-    ("pliant-render", &[]),
+    ("pliant-render", &["pliant-shaders"]),
     ("pliant-editor", &["pliant-deform", "pliant-flow", "pliant-mesh"]),
     (
         "pliant-engine",

@@ -18,7 +18,7 @@ fn pages() -> BTreeMap<PathBuf, String> {
         "crates",
         "crates/deform",
         "crates/python",
-        "crates/render/shaders",
+        "shaders",
         "docs",
     ] {
         for entry in fs::read_dir(root.join(folder)).unwrap() {

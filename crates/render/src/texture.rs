@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
+use pliant_shaders::Shader;
+
 use crate::RenderError;
 use crate::device::bindings::bind_group;
 use crate::device::guard::guarded;
 use crate::device::opening::is_software;
 use crate::pipelines::fullscreen;
-use crate::pipelines::shaders::Shader;
 
 /// An image with four bytes per pixel (straight alpha), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]

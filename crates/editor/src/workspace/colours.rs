@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn so_are_their_tints_on_dark_and_light_surfaces() {
-        // `under_region` in crates/render/shaders/lib/surface_shape.wgsl.
+        // `under_region` in shaders/lib/surface_shape.wgsl.
         let share = f64::from(TINT) / 255.0;
         for grey in [0.15, 0.3, 0.45, 0.6] {
             let tinted = |colour: DVec3| {

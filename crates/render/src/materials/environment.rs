@@ -1,10 +1,11 @@
 //! The environment light of materials: two cube maps, drawn when a material is first shown.
 
+use pliant_shaders::Shader;
+
 use crate::device::bindings::bind_group;
 use crate::device::buffers::filled;
 use crate::device::guard::guarded;
 use crate::pipelines::fullscreen;
-use crate::pipelines::shaders::Shader;
 use crate::uniforms::EnvironmentUniform;
 use crate::{Gpu, RenderError};
 

@@ -1,6 +1,7 @@
 //! The state of each render pipeline.
 
-use super::shaders::Shader;
+use pliant_shaders::Shader;
+
 use super::vertex_layouts::{
     OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };

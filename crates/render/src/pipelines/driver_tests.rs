@@ -8,8 +8,9 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
+use pliant_shaders::Shader;
+
 use super::description::PipelineDescription;
-use super::shaders::Shader;
 use super::{Alpha, MaterialAttributes, Pipeline, Pipelines, Visibility};
 use crate::device::guard::guarded;
 use crate::materials::environment;
@@ -47,7 +48,7 @@ fn every_pipeline() -> Vec<Pipeline> {
 fn every_fragment_shader_belongs_to_a_pipeline() {
     let fullscreen = [Shader::Mipmap, Shader::Environment, Shader::ShadowBlur];
     let mut written = BTreeSet::new();
-    for shader in Shader::ALL.into_iter().filter(|shader| !fullscreen.contains(shader)) {
+    for &shader in Shader::ALL.iter().filter(|shader| !fullscreen.contains(shader)) {
         let module = naga::front::wgsl::parse_str(&shader.composed()).unwrap();
         for entry in module.entry_points {
             if entry.stage == naga::ShaderStage::Fragment {

@@ -6,15 +6,17 @@ mod description;
 mod driver_tests;
 pub(crate) mod fullscreen;
 pub(crate) mod pipeline;
-pub(crate) mod shaders;
+#[cfg(test)]
+mod shader_tests;
 pub(crate) mod vertex_layouts;
 
 use std::collections::HashMap;
 
+use pliant_shaders::Shader;
+
 use self::bind_group_layouts::{layout, sampler_entry, storage_entry, texture_entry, uniform_entry};
 use self::description::PipelineDescription;
 pub(crate) use self::pipeline::{Alpha, ID_FORMAT, MaterialAttributes, OCCLUSION_FORMAT, Pipeline, Visibility};
-use self::shaders::Shader;
 use crate::device::guard::guarded;
 use crate::{RenderError, Samples};
 

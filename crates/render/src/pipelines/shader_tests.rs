@@ -5,8 +5,8 @@
 use std::mem::offset_of;
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use pliant_shaders::Shader;
 
-use super::Shader;
 use crate::pipelines::MaterialAttributes;
 use crate::pipelines::vertex_layouts::{
     OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
@@ -18,7 +18,7 @@ use crate::uniforms::{
 
 #[test]
 fn every_shader_is_valid() {
-    for shader in Shader::ALL {
+    for &shader in Shader::ALL {
         let (module, _) = validated(shader);
         assert!(
             !module.entry_points.is_empty(),
@@ -30,14 +30,14 @@ fn every_shader_is_valid() {
 
 #[test]
 fn no_include_is_left_over() {
-    for shader in Shader::ALL {
+    for &shader in Shader::ALL {
         assert!(!shader.composed().contains("#include"), "{}", shader.file_name());
     }
 }
 
 #[test]
 fn every_shader_translates_to_hlsl() {
-    for shader in Shader::ALL {
+    for &shader in Shader::ALL {
         let (module, info) = validated(shader);
         let mut text = String::new();
         let options = naga::back::hlsl::Options {
@@ -54,7 +54,7 @@ fn every_shader_translates_to_hlsl() {
 
 #[test]
 fn every_shader_translates_to_msl() {
-    for shader in Shader::ALL {
+    for &shader in Shader::ALL {
         let (module, info) = validated(shader);
         let options = naga::back::msl::Options {
             lang_version: (2, 4),
@@ -100,7 +100,7 @@ fn uniform_structs_are_laid_out_alike() {
         padding_to_16: [f32; 2],
     });
     let frameless = [Shader::Mipmap, Shader::Environment, Shader::ShadowBlur];
-    for shader in Shader::ALL.into_iter().filter(|shader| !frameless.contains(shader)) {
+    for &shader in Shader::ALL.iter().filter(|shader| !frameless.contains(shader)) {
         assert_eq!(wgsl_layout(shader, "Frame"), frame, "{}", shader.file_name());
     }
     let surface = layout!(SurfaceUniform {

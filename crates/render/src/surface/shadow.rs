@@ -5,10 +5,10 @@
 //! drawn a second time only when the shadow is made again.
 
 use glam::{Mat4, Vec3, Vec4};
+use pliant_shaders::Shader;
 
 use crate::device::bindings::bind_group;
 use crate::device::guard::guarded;
-use crate::pipelines::shaders::Shader;
 use crate::pipelines::{OCCLUSION_FORMAT, Pipeline, fullscreen};
 use crate::surface::draw_calls::Batching;
 use crate::target::cleared_depth;
