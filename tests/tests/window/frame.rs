@@ -28,6 +28,13 @@ fn places(folder: &Folder) -> AppDirectories {
     }
 }
 
+/// A member of the kept settings; null if there is none.
+fn kept(folder: &Folder, member: &str) -> serde_json::Value {
+    let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
+    let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    settings[member].clone()
+}
+
 /// Moves the selected handle.
 fn bend(session: &mut Session) {
     let id = session.harness.state().editor().view().selected.unwrap();
@@ -134,11 +141,7 @@ fn a_maximised_window_is_remembered() {
     let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
         return;
     };
-    let remembered = || {
-        let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
-        let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        settings["maximised"].as_bool()
-    };
+    let remembered = || kept(&folder, "maximised").as_bool();
     for is_maximised in [true, false, true] {
         let input = session.harness.input_mut();
         let window = input.viewports.entry(egui::ViewportId::ROOT).or_default();
@@ -155,11 +158,7 @@ fn the_memory_that_binding_may_take_is_remembered() {
         return;
     };
     let most = |session: &Session| session.harness.state().editor().most_memory();
-    let kept = || {
-        let text = fs::read_to_string(folder.at("settings.json")).unwrap_or_default();
-        let settings: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        settings["memory"].clone()
-    };
+    let kept = || kept(&folder, "memory");
     assert_eq!(most(&session), None, "what the machine leaves");
     session.palette("memory");
     session.key(Key::Enter, Modifiers::NONE);
@@ -382,4 +381,51 @@ fn a_file_with_vertex_colours_opens_in_material() {
         "a person's own choice stays"
     );
     assert_eq!(open(&mut session, &plain), Shading::Zebra);
+}
+
+#[test]
+fn the_palette_offers_first_what_was_chosen_last_in_the_next_session_too() {
+    let folder = Folder::new();
+    let theme = || kept(&folder, "theme");
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    for name in ["light or dark", "canvas hints"] {
+        session.palette(name);
+        session.key(Key::Enter, Modifiers::NONE);
+    }
+    session.palette("light or dark");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    let chosen = theme();
+    assert_eq!(
+        kept(&folder, "recent_commands"),
+        serde_json::json!(["Light or dark", "Canvas hints"])
+    );
+    drop(session);
+
+    let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
+    session.palette("");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    assert_ne!(theme(), chosen, "Enter alone repeats it");
+}
+
+#[test]
+fn in_a_small_view_a_hint_has_its_title_alone_until_it_is_pointed_at() {
+    let folder = Folder::new();
+    let Some(mut session) = Session::begin_in(Source::Sample, places(&folder)) else {
+        return;
+    };
+    let shows = |session: &Session, text: &str| session.harness.query_by_label(text).is_some();
+    assert!(shows(&session, "1 of 3") && shows(&session, "Hide hints"));
+    session.harness.set_size(vec2(800.0, 520.0));
+    session.harness.run_steps(3);
+    assert!(shows(&session, "1 of 3") && !shows(&session, "Hide hints"));
+    let title = session.harness.get_by_label("1 of 3").rect().center();
+    session.pointer(title, None);
+    session.harness.run_steps(3);
+    session.harness.get_by_label("Hide hints").click();
+    session.harness.run_steps(3);
+    assert!(!shows(&session, "1 of 3"));
 }

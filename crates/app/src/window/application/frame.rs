@@ -214,12 +214,14 @@ impl Application {
         let Some(palette) = &mut self.dialogs.palette else {
             return;
         };
-        if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
+        if let Outcome::Chosen(chosen) = palette.show(context, &self.editor, &self.settings.get().recent_commands) {
             self.dialogs.palette = None;
-            match found {
-                Some(Found::Editor(command)) => self.command(command),
-                Some(Found::File(command)) => self.file_command(context, command),
-                None => {}
+            if let Some((name, found)) = chosen {
+                self.settings.change(|settings| settings.remember_command(name));
+                match found {
+                    Found::Editor(command) => self.command(command),
+                    Found::File(command) => self.file_command(context, command),
+                }
             }
             context.request_repaint();
         }

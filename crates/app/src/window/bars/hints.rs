@@ -6,6 +6,10 @@ use pliant_editor::{Editor, ToolMode};
 /// The largest width of a hint, in points.
 const WIDTH: f32 = 330.0;
 
+/// The least area of a view, in square points, that shows a hint's words at all times. A whole card covers 40,000. In a
+/// smaller view it has its title alone until the pointer is over it.
+const ROOMY: f32 = 250_000.0;
+
 /// Shows the next step in the view's lower left corner, above `toast`; true when the person closes the hints for good.
 pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, editor: &Editor) -> bool {
     let view = editor.view();
@@ -62,7 +66,12 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
     let floor = toast
         .filter(|toast| toast.left() < corner.x + WIDTH)
         .map_or(corner.y, |toast| toast.top() - 8.0);
-    egui::Area::new(egui::Id::unique("hint"))
+    let id = egui::Id::unique("hint");
+    let card = ui.memory(|memory| memory.area_rect(id));
+    let pointer = ui.input(|input| input.pointer.hover_pos());
+    let is_pointed_at = card.zip(pointer).is_some_and(|(card, pointer)| card.contains(pointer));
+    let is_whole = view_rect.area() >= ROOMY || is_pointed_at;
+    egui::Area::new(id)
         .fixed_pos(egui::pos2(corner.x, floor))
         .pivot(Align2::LEFT_BOTTOM)
         .show(ui.ctx(), |ui| {
@@ -74,10 +83,13 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
                     ui.horizontal(|ui| {
                         ui.label(RichText::new(format!("{number} of 3")).weak().small());
                         ui.label(RichText::new(title).strong().color(accent(ui)));
+                        if !is_whole {
+                            ui.label(RichText::new("…").weak());
+                        }
                     });
-                    ui.label(words);
-                    if ui.small_button("Hide hints").clicked() {
-                        put_away = true;
+                    if is_whole {
+                        ui.label(words);
+                        put_away = ui.small_button("Hide hints").clicked();
                     }
                 });
         });

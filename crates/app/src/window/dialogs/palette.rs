@@ -32,8 +32,8 @@ pub enum Found {
 pub enum Outcome {
     /// It stays open.
     Open,
-    /// It closes, and this command follows.
-    Chosen(Option<Found>),
+    /// It closes, and the command of this name follows.
+    Chosen(Option<(String, Found)>),
 }
 
 struct Entry {
@@ -47,8 +47,8 @@ struct Entry {
 }
 
 impl Palette {
-    /// Shows it over everything.
-    pub fn show(&mut self, context: &egui::Context, editor: &Editor) -> Outcome {
+    /// Shows it over everything. `recent` has the names that were chosen before, the newest first.
+    pub fn show(&mut self, context: &egui::Context, editor: &Editor, recent: &[String]) -> Outcome {
         let mut outcome = Outcome::Open;
         let modal = Modal::new(Id::unique("palette")).show(context, |ui| {
             ui.set_width(440.0);
@@ -74,7 +74,7 @@ impl Palette {
             if field.changed() || up || down {
                 self.refusal = None;
             }
-            let entries = entries(context, editor, &self.typed);
+            let entries = entries(context, editor, &self.typed, recent);
             self.chosen = (self.chosen + usize::from(down))
                 .saturating_sub(usize::from(up))
                 .min(entries.len().saturating_sub(1));
@@ -111,7 +111,7 @@ impl Palette {
                             button.contains_pointer() && ui.input(|input| input.pointer.primary_clicked());
                         if is_pointed_at || button.clicked() || (enter && number == self.chosen) {
                             match &entry.obstacle {
-                                None => outcome = Outcome::Chosen(Some(entry.found.clone())),
+                                None => outcome = Outcome::Chosen(Some((entry.name.clone(), entry.found.clone()))),
                                 Some(obstacle) => {
                                     self.refusal = Some(obstacle.clone());
                                     // This is above the list, whose place this frame has already passed.
@@ -131,8 +131,8 @@ impl Palette {
 
 /// The matches, the best first: names that begin with the typed text, then names that contain it, then entries whose
 /// keywords contain it, then names with its letters in order. Among equal matches, those that can be done now come
-/// first.
-fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> {
+/// first, and of these the recent ones.
+fn entries(context: &egui::Context, editor: &Editor, typed: &str, recent: &[String]) -> Vec<Entry> {
     let typed = typed.trim().to_lowercase();
     let listed = Command::all_listed().map(|listed| Entry {
         name: listed.name.to_owned(),
@@ -176,7 +176,13 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         .chain(files)
         .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), entry.keywords, &typed)?, entry)))
         .collect();
-    found.sort_by_key(|(rank, entry)| (*rank, entry.obstacle.is_some()));
+    let age = |entry: &Entry| {
+        recent
+            .iter()
+            .position(|name| *name == entry.name)
+            .unwrap_or(recent.len())
+    };
+    found.sort_by_key(|(rank, entry)| (*rank, entry.obstacle.is_some(), age(entry)));
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 

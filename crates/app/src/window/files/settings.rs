@@ -13,12 +13,17 @@ use pliant_engine::memory;
 /// The number of files that are remembered.
 const RECENT: usize = 10;
 
+/// The number of commands that are remembered.
+const RECENT_COMMANDS: usize = 6;
+
 /// The settings.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
     /// Files and projects that were opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
+    /// Commands that were chosen in the palette, by their names there, the newest first.
+    pub recent_commands: Vec<String>,
     /// Light or dark.
     pub theme: ThemeChoice,
     /// The scale of the interface, 1 for the system's own.
@@ -184,6 +189,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             recent: Vec::new(),
+            recent_commands: Vec::new(),
             theme: ThemeChoice::default(),
             ui_scale: 1.0,
             panel_width: 280.0,
@@ -241,9 +247,12 @@ impl Settings {
     /// Puts a file at the head of the recent ones.
     pub fn remember(&mut self, path: &Path) {
         let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        self.recent.retain(|known| *known != path);
-        self.recent.insert(0, path);
-        self.recent.truncate(RECENT);
+        put_first(&mut self.recent, path, RECENT);
+    }
+
+    /// Puts a command of the palette at the head of the recent ones.
+    pub fn remember_command(&mut self, name: String) {
+        put_first(&mut self.recent_commands, name, RECENT_COMMANDS);
     }
 
     /// Removes the recent file that a refusal names from the list, if it no longer exists.
@@ -251,6 +260,13 @@ impl Settings {
         let is_named = |path: &Path| refusal.starts_with(&shown(path));
         self.recent.retain(|path| !is_named(path) || path.exists());
     }
+}
+
+/// Puts an entry at the head of at most `most` different ones.
+fn put_first<T: PartialEq>(recent: &mut Vec<T>, entry: T, most: usize) {
+    recent.retain(|known| *known != entry);
+    recent.insert(0, entry);
+    recent.truncate(most);
 }
 
 #[cfg(test)]
