@@ -19,7 +19,7 @@ use super::skins::SkinSource;
 use super::slot::{Ended, Scheduled, Slot, Unfinished, Work};
 use super::solved::{ControlPlaces, SolveResult, Solved};
 use super::solving::{controls_work, solve_work};
-use super::table::{Executor, JobDone, JobKind, Slots};
+use super::table::{Executor, Input, JobDone, JobKind, Slots};
 use super::work::{bind_work, pick_work, region_work};
 use crate::document::{Document, Version};
 use crate::pickable::ShownTriangles;
@@ -129,8 +129,7 @@ impl Jobs {
     /// Paint, reach, rest shape, stiffness or options have changed.
     pub(crate) fn problem_changed(&mut self) {
         let revision = self.next_revision();
-        self.computed.slots.region.renew(revision);
-        self.computed.slots.bind.renew(revision);
+        self.computed.slots.renew(Input::Problem, revision);
         self.drop_solves();
     }
 
@@ -188,8 +187,8 @@ impl Jobs {
     /// The drawn shape has changed.
     pub(crate) fn shape_changed(&mut self) {
         let revision = self.next_revision();
-        self.computed.slots.pick.follow(revision);
-        self.computed.slots.intersect.renew(revision);
+        self.computed.slots.follow(Input::LastShape, revision);
+        self.computed.slots.renew(Input::Shape, revision);
     }
 
     /// Solves that run or are done but have not arrived must no longer change the shape.

@@ -167,7 +167,7 @@ impl<T> Slot<T> {
     }
 
     /// The result for the present state.
-    pub(super) fn current(&self) -> Option<&T> {
+    pub(crate) fn current(&self) -> Option<&T> {
         self.last.as_ref().filter(|_| self.is_current())
     }
 }

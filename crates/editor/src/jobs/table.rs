@@ -31,6 +31,21 @@ struct Row {
     is_awaited: bool,
     /// Whether the status line names it.
     is_named: bool,
+    /// The state for which its result is.
+    input: Input,
+}
+
+/// The state for which a job's result is: a change of it makes running jobs useless.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Input {
+    /// Its request alone, or changes that only its own code knows.
+    Request,
+    /// Paint, reach, rest shape, stiffness and options.
+    Problem,
+    /// The drawn shape.
+    Shape,
+    /// The drawn shape; the last one's result is of use until the next one's has come.
+    LastShape,
 }
 
 /// Makes the kinds of jobs, their results, and the slots from the rows: `slot: Kind(result) = row`.
@@ -90,6 +105,20 @@ macro_rules! jobs {
                 $(self.$slot.reset(revision);)+
             }
 
+            /// A change of this state: jobs that use it are cancelled, and their results dropped.
+            pub(super) fn renew(&mut self, input: Input, revision: Revision) {
+                $(if JobKind::$kind.row().input == input {
+                    self.$slot.renew(revision);
+                })+
+            }
+
+            /// A change of this state: jobs that use it are of use until those for the new state have ended.
+            pub(super) fn follow(&mut self, input: Input, revision: Revision) {
+                $(if JobKind::$kind.row().input == input {
+                    self.$slot.follow(revision);
+                })+
+            }
+
             /// Starts the waiting jobs that can start.
             pub(super) fn start(&mut self, executor: &mut dyn Executor) {
                 $(if let Some((running, work)) = self.$slot.start_next() {
@@ -123,40 +152,98 @@ jobs! {
         doing: "preparing the surface for the pointer",
         is_awaited: false,
         is_named: true,
+        input: Input::LastShape,
     };
     /// The mesh's fill-reducing ordering, made once per mesh and operator power.
-    order: Order(Arc<Ordering>) = Row { doing: "ordering the equations", is_awaited: true, is_named: true };
+    order: Order(Arc<Ordering>) = Row {
+        doing: "ordering the equations",
+        is_awaited: true,
+        is_named: true,
+        input: Input::Request,
+    };
     /// The vertices that each handle's reach sets free.
-    region: Region(Region) = Row { doing: "measuring the region", is_awaited: true, is_named: true };
+    region: Region(Region) = Row {
+        doing: "measuring the region",
+        is_awaited: true,
+        is_named: true,
+        input: Input::Problem,
+    };
     /// The factorisation for the present regions, ready for steps.
-    bind: Bind(Box<PresentBinding>) = Row { doing: "binding", is_awaited: true, is_named: true };
+    bind: Bind(Box<PresentBinding>) = Row {
+        doing: "binding",
+        is_awaited: true,
+        is_named: true,
+        input: Input::Problem,
+    };
     /// The surface, or the control points alone, for the present handle transforms.
-    solve: Solve(SolveResult) = Row { doing: "bending", is_awaited: true, is_named: false };
+    solve: Solve(SolveResult) = Row {
+        doing: "bending",
+        is_awaited: true,
+        is_named: false,
+        input: Input::Request,
+    };
     /// The vertices of a region's mirror image, ascending.
-    mirror: Mirror(Vec<usize>) = Row { doing: "computing the mirror image", is_awaited: true, is_named: true };
+    mirror: Mirror(Vec<usize>) = Row {
+        doing: "computing the mirror image",
+        is_awaited: true,
+        is_named: true,
+        input: Input::Request,
+    };
     /// The plane across which the shape is its own mirror image, and the pairs of vertices; `None` if it has none.
     symmetry: Symmetry(Option<Arc<BothSides>>) = Row {
         doing: "finding the plane of symmetry",
         is_awaited: true,
         is_named: true,
+        input: Input::Request,
     };
     /// The vertices inside an outline on the screen, or along a line.
-    enclose: Enclose(Enclosed) = Row { doing: "finding the enclosed vertices", is_awaited: true, is_named: true };
+    enclose: Enclose(Enclosed) = Row {
+        doing: "finding the enclosed vertices",
+        is_awaited: true,
+        is_named: true,
+        input: Input::Request,
+    };
     /// Another method's result for the edit.
-    compare: Compare(Box<Compared>) = Row { doing: "comparing methods", is_awaited: false, is_named: false };
+    compare: Compare(Box<Compared>) = Row {
+        doing: "comparing methods",
+        is_awaited: false,
+        is_named: false,
+        input: Input::Request,
+    };
     /// Weights or base of the present binding, for display.
-    inspect: Inspect(Inspected) = Row { doing: "inspecting the binding", is_awaited: true, is_named: false };
+    inspect: Inspect(Inspected) = Row {
+        doing: "inspecting the binding",
+        is_awaited: true,
+        is_named: false,
+        input: Input::Request,
+    };
     /// The joint of the limb under the pointer; `None` if there is none.
-    joint: Joint(Option<FoundLimb>) = Row { doing: "finding the joint", is_awaited: false, is_named: false };
+    joint: Joint(Option<FoundLimb>) = Row {
+        doing: "finding the joint",
+        is_awaited: false,
+        is_named: false,
+        input: Input::Request,
+    };
     /// The shapes of the moments around the shown one.
-    skins: Skins(Box<Skinned>) = Row { doing: "solving the moments around", is_awaited: false, is_named: false };
+    skins: Skins(Box<Skinned>) = Row {
+        doing: "solving the moments around",
+        is_awaited: false,
+        is_named: false,
+        input: Input::Request,
+    };
     /// A step of the flow on the surface.
-    flow: Flow(Box<Flowed>) = Row { doing: "flowing", is_awaited: false, is_named: false };
+    flow: Flow(Box<Flowed>) = Row {
+        doing: "flowing",
+        is_awaited: false,
+        is_named: false,
+        input: Input::Request,
+    };
     /// The places where the present shape passes through itself.
     intersect: Intersect(Intersections) = Row {
         doing: "finding places where the shape passes through itself",
         is_awaited: false,
         is_named: false,
+        input: Input::Shape,
     };
 }
 
