@@ -1,4 +1,4 @@
-//! The part of the surface that an ARAP energy sees, numbered for the solver.
+//! The part of the surface that an energy of vertices and their rings sees, numbered for the solver.
 //!
 //! Local vertices are first the solved ones, in the order of elimination; then their constrained neighbours, whose
 //! cells count too; then the rest of those cells' rings. So a field over the solved vertices is the head of a field

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::coarse::domain::ABSENT;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
 
@@ -9,7 +10,7 @@ use crate::handles::{Handle, Motion};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prescribed {
     pub surface_vertex: u32,
-    /// The number of the vertex among the solver's; [`crate::coarse::domain::ABSENT`] if the energy does not see it.
+    /// The number of the vertex among the solver's; [`ABSENT`] if the energy does not see it.
     pub local: u32,
     coordinates: [f64; 4],
     /// The offset of its target from its handle's motion.
@@ -45,6 +46,17 @@ impl Prescribed {
     /// The displacement to its target.
     pub fn goes(&self, motion: &Motion) -> DVec3 {
         motion.displace(self.coordinates) + self.offset
+    }
+
+    /// The handles' vertices that the energy sees, by their local numbers, each with what belongs to its handle.
+    pub fn seen<'a, T: Copy + 'a>(
+        each: &'a [Vec<Self>],
+        of_handles: impl IntoIterator<Item = T> + 'a,
+    ) -> impl Iterator<Item = (usize, &'a Self, T)> + 'a {
+        each.iter().zip(of_handles).flat_map(|(own, of_handle)| {
+            let seen = own.iter().filter(|vertex| vertex.local != ABSENT);
+            seen.map(move |vertex| (vertex.local as usize, vertex, of_handle))
+        })
     }
 
     /// Writes the displacements of the handles' vertices.

@@ -10,6 +10,7 @@ pub(crate) mod matrix;
 pub(crate) mod numeric;
 pub(crate) mod ordering;
 pub(crate) mod refactorisation;
+pub(crate) mod scaled_substitution;
 pub(crate) mod solve;
 pub(crate) mod symbolic;
 pub(crate) mod system_error;

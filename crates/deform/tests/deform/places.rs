@@ -76,10 +76,9 @@ fn every_vertex_of_a_handle_goes_to_its_place_and_rigid_places_are_a_map() {
                 .all(|d| *d == DVec3::ZERO)
         );
     }
-    assert_eq!(
-        takers,
-        ["bilaplacian", "arap", "shells", "wrinkles", "poisson", "frames"]
-    );
+    for known in ["bilaplacian", "arap", "shells", "wrinkles", "poisson", "frames"] {
+        assert!(takers.contains(&known), "{known}");
+    }
 }
 
 #[test]

@@ -47,8 +47,7 @@ impl ArapSolver {
     pub(super) fn map_gradient(&mut self) {
         let gradient = &self.current.gradient;
         self.history.mapped.resize(gradient.len(), [0.0; 3]);
-        self.preconditioner
-            .map(gradient, &mut self.history.mapped, &mut self.map_scratch);
+        self.preconditioner.map(gradient, &mut self.history.mapped);
     }
 }
 

@@ -45,7 +45,7 @@ use self::cells::{Cells, quad, vector};
 use self::end::End;
 use self::history::{Field, History};
 use self::matrix::System;
-use self::precondition::{MapScratch, Preconditioner, WeightInput};
+use self::precondition::{Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use crate::coarse::domain::Domain;
 use crate::descent::prescribed::Prescribed;
@@ -80,7 +80,6 @@ pub(crate) struct ArapSolver {
     current: Shape,
     trial: Shape,
     scratch: Scratch,
-    map_scratch: MapScratch,
     history: History,
     /// The direction uphill, in units of `unit`.
     direction: Field,
@@ -168,7 +167,6 @@ impl ArapSolver {
             current: at_rest.clone(),
             trial: at_rest,
             scratch: Scratch::default(),
-            map_scratch: MapScratch::default(),
             history: History::default(),
             direction: Field::new(),
             end: End::Known,

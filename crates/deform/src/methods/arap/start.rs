@@ -7,7 +7,6 @@ use super::ArapSolver;
 use super::cells::{quad, vector};
 use super::end::End;
 use super::shape::{Guesses, IDENTITY, Shape, narrow, wide};
-use crate::coarse::domain::ABSENT;
 use crate::descent::prescribed::Prescribed;
 use crate::descent::rule::State;
 use crate::handles::Motion;
@@ -158,8 +157,7 @@ impl ArapSolver {
         trial.add_gradient_of(springs);
         let unit = self.unit;
         self.direction.resize(trial.gradient.len(), Default::default());
-        self.preconditioner
-            .map(&trial.gradient, &mut self.direction, &mut self.map_scratch);
+        self.preconditioner.map(&trial.gradient, &mut self.direction);
         trial.displacements[..trial.gradient.len()]
             .par_chunks_mut(CHUNK)
             .zip(self.direction.par_chunks(CHUNK))
@@ -185,10 +183,8 @@ impl Shape {
     /// Sets the constrained vertices to their exact positions.
     pub(super) fn place(&mut self, prescribed: &[Vec<Prescribed>], motions: &[Motion]) {
         self.displacements[self.gradient.len()..].fill([0.0; 4]);
-        for (own, motion) in prescribed.iter().zip(motions) {
-            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                self.displacements[vertex.local as usize] = quad(vertex.goes(motion), 0.0);
-            }
+        for (local, vertex, motion) in Prescribed::seen(prescribed, motions) {
+            self.displacements[local] = quad(vertex.goes(motion), 0.0);
         }
     }
 }

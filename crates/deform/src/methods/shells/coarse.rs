@@ -19,6 +19,7 @@ use super::{Shells, ShellsSolver};
 use crate::coarse::clustered::{Share, Shares, on_clusters, shares, transposed};
 use crate::coarse::clusters::Clusters;
 use crate::coarse::domain::Domain;
+use crate::descent::prescribed::Prescribed;
 use crate::handles::blend::Origin;
 use crate::handles::offsets::Offsets;
 use crate::handles::{Handle, Motion};
@@ -250,10 +251,8 @@ impl Coarse {
         let elements = &self.solver.energy.elements;
         let mut turns = fitted(elements, &self.followed, &self.solver.positions());
         turns[elements.solved_count..].fill(DQuat::IDENTITY);
-        for (own, turn) in self.solver.prescribed.iter().zip(of_handles) {
-            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                turns[vertex.local as usize] = *turn;
-            }
+        for (local, _, turn) in Prescribed::seen(&self.solver.prescribed, of_handles) {
+            turns[local] = *turn;
         }
         turns
     }

@@ -11,12 +11,12 @@ use pliant_mesh::Cancel;
 
 use super::carry::{Base, Carrier, Strains};
 use super::coarse::Coarse;
-use super::elements::ABSENT;
 use super::system::{Pattern, System};
 use super::unfolded::Preconditioner;
 use super::{Blending, Leader, Means, ShellsSolver};
 use crate::budget::Budget;
 use crate::descent::corrections::Corrections;
+use crate::descent::prescribed::Prescribed;
 use crate::descent::rule::State;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screws};
@@ -295,11 +295,8 @@ impl ShellsSolver {
                 *turn *= DMat3::from_quat(own);
             }
         }
-        for (own, turn) in self.prescribed.iter().zip(&of_handles) {
-            let turn = DMat3::from_quat(*turn);
-            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                turns[vertex.local as usize] = turn;
-            }
+        for (local, _, turn) in Prescribed::seen(&self.prescribed, &of_handles) {
+            turns[local] = DMat3::from_quat(*turn);
         }
         turns
     }

@@ -129,11 +129,8 @@ impl ShellsSolver {
             (screw.turn() * blended.conjugate()).to_scaled_axis()
         };
         let further: Vec<DVec3> = self.prescribed.iter().zip(screws).map(further).collect();
-        for (own, vector) in self.prescribed.iter().zip(&further) {
-            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                let turn = &mut turns[vertex.local as usize];
-                *turn = DQuat::from_scaled_axis(*vector) * *turn;
-            }
+        for (local, _, vector) in Prescribed::seen(&self.prescribed, &further) {
+            turns[local] = DQuat::from_scaled_axis(*vector) * turns[local];
         }
         let count = further.len();
         let solved_count = self.energy.elements.solved_count;
@@ -185,10 +182,8 @@ impl ShellsSolver {
                 });
         }
         trial.displacements[solved_count..].fill(DVec3::ZERO);
-        for (own, motion) in self.prescribed.iter().zip(&self.motions) {
-            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
-                trial.displacements[vertex.local as usize] = vertex.goes(motion);
-            }
+        for (local, vertex, motion) in Prescribed::seen(&self.prescribed, &self.motions) {
+            trial.displacements[local] = vertex.goes(motion);
         }
     }
 }

@@ -12,7 +12,6 @@
 //! vertices lowered the energy as much as without.
 
 use pliant_mesh::{Cancel, SurfaceVertex};
-use rayon::prelude::*;
 
 use super::elements::Hinge;
 use super::hinge::flat;
@@ -20,15 +19,13 @@ use super::shape::Energy;
 use super::system::{Pattern, scale};
 use crate::Role;
 use crate::budget::Budget;
-use crate::numerical::rows::{CHUNK, place_in};
-use crate::numerical::sums::CHUNKS_A_TASK;
+use crate::numerical::rows::place_in;
 use crate::region::boundary_problem::BoundaryProblem;
 use crate::region::partition::Partition;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::solve::rhs::Rhs;
-use crate::sparse::solve::substitution::{Scratch, Substitution};
+use crate::sparse::scaled_substitution::ScaledSubstitution;
 
 /// The factor of the unfolded energy's matrix on the solved vertices.
 #[derive(Debug)]
@@ -39,12 +36,7 @@ pub(super) struct Unfolded {
 
 /// The same in single precision and laid out for many solves: accurate enough for a direction.
 #[derive(Debug)]
-pub(super) struct Preconditioner {
-    factor: Substitution<f32>,
-    scale: Vec<f64>,
-    rows: Vec<Rhs<f32>>,
-    scratch: Scratch<f32>,
-}
+pub(super) struct Preconditioner(ScaledSubstitution<f32>);
 
 impl Unfolded {
     /// Factors the matrix, with supernodes that end at `ends`.
@@ -70,12 +62,7 @@ impl Unfolded {
     /// # Errors
     /// [`FactorError::Memory`].
     pub fn preconditioner(self) -> Result<Preconditioner, FactorError> {
-        Ok(Preconditioner {
-            factor: self.factor.substitution()?,
-            scale: self.scale,
-            rows: Vec::new(),
-            scratch: Scratch::default(),
-        })
+        ScaledSubstitution::of(&self.factor, self.scale).map(Preconditioner)
     }
 
     /// Each handle's weight at each solved vertex, from 0 to 1, in rows.
@@ -137,35 +124,13 @@ impl Unfolded {
 impl Preconditioner {
     /// The count of numbers of 8 bytes that it stores.
     pub fn stored(&self) -> usize {
-        self.factor.stored() / 2
+        self.0.stored() / 2
     }
 
     /// x ← A⁻¹ x.
     pub fn apply(&mut self, x: &mut [[f64; 3]]) {
-        let Self {
-            factor,
-            scale,
-            rows,
-            scratch,
-        } = self;
-        rows.resize(x.len(), Rhs::default());
-        rows.par_chunks_mut(CHUNK)
-            .zip(x.par_chunks(CHUNK).zip(scale.par_chunks(CHUNK)))
-            .with_min_len(CHUNKS_A_TASK)
-            .for_each(|(rows, (x, scale))| {
-                for ((row, x), scale) in rows.iter_mut().zip(x).zip(scale) {
-                    *row = [x[0] * scale, x[1] * scale, x[2] * scale, 0.0].map(|value| value as f32);
-                }
-            });
-        factor.solve(rows, scratch);
-        x.par_chunks_mut(CHUNK)
-            .zip(rows.par_chunks(CHUNK).zip(scale.par_chunks(CHUNK)))
-            .with_min_len(CHUNKS_A_TASK)
-            .for_each(|(x, (rows, scale))| {
-                for ((x, row), scale) in x.iter_mut().zip(rows).zip(scale) {
-                    *x = std::array::from_fn(|k| f64::from(row[k]) * scale);
-                }
-            });
+        self.0.solve(x, |x| [x[0], x[1], x[2], 0.0]);
+        self.0.take(x, |x, row| *x = [row[0], row[1], row[2]]);
     }
 }
 
