@@ -4,6 +4,7 @@ mod objects;
 mod rest;
 
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -35,6 +36,8 @@ pub struct Model {
     pub objects: Vec<Object>,
     /// The options with which its vertices were joined.
     pub weld: WeldOptions,
+    /// [`Self::bounds`] and [`Self::bounds_without_specks`], measured once: a view asks for them at every frame.
+    measured: [OnceLock<Option<Bounds>>; 2],
 }
 
 impl Model {
@@ -58,7 +61,7 @@ impl Model {
         };
         let inside_out = parts.report(topology.findings(), &mut welded.findings);
         progress.set(1.0);
-        Ok(Self {
+        let model = Self {
             drawn,
             surface: welded.surface,
             topology,
@@ -66,13 +69,17 @@ impl Model {
             inside_out,
             objects: Vec::new(),
             weld: *options,
-        })
+            measured: Default::default(),
+        };
+        // Whoever welds waits anyway.
+        model.bounds_without_specks();
+        Ok(model)
     }
 
     /// The bounding box of the vertices that kept triangles use, or of all bare points if there is no triangle; `None`
     /// for an empty surface.
     pub fn bounds(&self) -> Option<Bounds> {
-        bounding_box(self.main_positions())
+        *self.measured[0].get_or_init(|| bounding_box(self.main_positions()))
     }
 
     /// For each connected part, true if it has fewer vertices than this share (0 to 1) of the largest part's. Bare
@@ -106,6 +113,9 @@ impl Model {
         let components = self.topology.components();
         let of_triangles = of_triangles(components).len();
         let is_bit = self.small_parts(LOOSE_BIT);
+        if !is_bit.contains(&true) {
+            return is_bit;
+        }
         let box_of = |number: usize| {
             let vertices = self.topology.vertices_of(number as u32);
             Bounds::around(vertices.map(|v| self.surface.positions[v.index()]))
@@ -123,10 +133,14 @@ impl Model {
 
     /// The box that the view shows: as [`Self::bounds`], without specks.
     pub fn bounds_without_specks(&self) -> Option<Bounds> {
-        Bounds::around(
-            self.vertices_without_specks()
-                .map(|v| self.surface.positions[v.index()]),
-        )
+        let without_specks = || {
+            let vertices = self.vertices_without_specks();
+            Bounds::around(vertices.map(|v| self.surface.positions[v.index()]))
+        };
+        *self.measured[1].get_or_init(|| match self.specks().contains(&true) {
+            true => without_specks(),
+            false => self.bounds(),
+        })
     }
 
     /// The vertices of [`Self::main_positions`] that belong to no speck.
