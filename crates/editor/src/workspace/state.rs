@@ -333,11 +333,12 @@ impl Workspace {
 
     /// The positions of all shown vertices, without specks.
     pub(crate) fn shown_positions(&self) -> Vec<DVec3> {
-        let all = self
-            .model()
-            .into_iter()
-            .flat_map(|model| model.vertices_without_specks());
+        let Some(model) = self.model() else { return Vec::new() };
+        let all = model.vertices_without_specks();
         let shown = all.filter(|vertex| self.vertex_access.is_shown(vertex.index()));
-        shown.map(|vertex| self.position(vertex)).collect()
+        // A filter's size is unknown; growing by doubling would copy millions several times.
+        let mut positions = Vec::with_capacity(model.surface.positions.len());
+        positions.extend(shown.map(|vertex| self.position(vertex)));
+        positions
     }
 }
