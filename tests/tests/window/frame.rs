@@ -12,6 +12,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::window_rig::{Session, colour_at};
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -428,4 +429,28 @@ fn in_a_small_view_a_hint_has_its_title_alone_until_it_is_pointed_at() {
     session.harness.get_by_label("Hide hints").click();
     session.harness.run_steps(3);
     assert!(!shows(&session, "1 of 3"));
+}
+
+#[test]
+fn every_setting_of_a_tool_is_beside_its_name_within_the_bar() {
+    let Some(mut session) = Session::begin() else { return };
+    // From 1280 × 800 at 150% to a large window.
+    for width in (820..1300).step_by(32) {
+        session.harness.set_size(vec2(width as f32, 560.0));
+        session.harness.run_steps(4);
+        let right = session.harness.state().view_rect().right();
+        let of_role = |role, name| {
+            let mut nodes = session.harness.query_all_by_role_and_label(role, name);
+            nodes.next().map(|node| node.rect())
+        };
+        for name in ["Depth", "Symmetry"] {
+            let label = of_role(Role::Label, name).unwrap_or_else(|| panic!("{name} at {width}"));
+            let field = of_role(Role::ComboBox, name).unwrap_or_else(|| panic!("{name}'s field at {width}"));
+            assert!(
+                field.right() <= right && label.right() <= field.left(),
+                "{name} at {width}"
+            );
+            assert!((label.center().y - field.center().y).abs() < 3.0, "{name} at {width}");
+        }
+    }
 }

@@ -6,13 +6,29 @@ use eframe::egui::{self, Align, Label, Layout, TextStyle};
 /// The column's least width; longer names are wider.
 const WIDTH: f32 = 70.0;
 
+/// The width beside a name in a bar, in points, that the widest field needs.
+const FIELD: f32 = 140.0;
+
 /// Shows the name in the panel.
 pub fn row_label(ui: &mut egui::Ui, name: impl Into<egui::WidgetText>) -> egui::Response {
     label(ui, name, WIDTH)
 }
 
-/// Shows the name in a bar.
-pub fn bar_label(ui: &mut egui::Ui, name: impl Into<egui::WidgetText>) -> egui::Response {
+/// Shows the name in a bar, on the next line of it if its field does not fit beside it on this one.
+pub fn bar_label(ui: &mut egui::Ui, name: &str) -> egui::Response {
+    let is_first = ui.cursor().left() <= ui.max_rect().left();
+    if ui.layout().main_wrap() && !is_first {
+        let galley = egui::WidgetText::from(name).into_galley(
+            ui,
+            Some(egui::TextWrapMode::Extend),
+            f32::INFINITY,
+            TextStyle::Body,
+        );
+        let needed = galley.size().x + ui.spacing().item_spacing.x + FIELD;
+        if ui.available_size_before_wrap().x < needed {
+            ui.end_row();
+        }
+    }
     label(ui, name, 0.0)
 }
 
