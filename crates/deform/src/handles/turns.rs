@@ -101,12 +101,13 @@ impl TurnLimit {
         let mut worst = (0.0, 0);
         let own = |ends: &&Ends| counted(ends.0) && ends.1.is_none_or(&counted);
         for (number, other) in self.ends.iter().filter(own) {
-            let other = other.map_or(DQuat::IDENTITY, turn);
-            // The angle's cosine would lose small angles.
-            let between = (turn(*number) * other.conjugate()).to_scaled_axis().length();
-            let degrees = between.min(std::f64::consts::TAU - between).to_degrees();
+            let beyond = other.map_or(DQuat::IDENTITY, turn);
+            let degrees = degrees_between(turn(*number), beyond);
             if degrees > worst.0 {
-                worst = (degrees, usize::from(*number));
+                // The person has turned the one that is farther from rest.
+                let from_rest = |number: u16| degrees_between(turn(number), DQuat::IDENTITY);
+                let turned = other.filter(|other| from_rest(*other) > from_rest(*number));
+                worst = (degrees, usize::from(turned.unwrap_or(*number)));
             }
         }
         let (degrees, number) = worst;
@@ -127,4 +128,11 @@ impl TurnLimit {
             })
         })
     }
+}
+
+/// The angle between two turns, from 0 to 180 degrees.
+fn degrees_between(one: DQuat, other: DQuat) -> f64 {
+    // The angle's cosine would lose small angles.
+    let between = (one * other.conjugate()).to_scaled_axis().length();
+    between.min(std::f64::consts::TAU - between).to_degrees()
 }
