@@ -111,6 +111,11 @@ impl Bound {
             let positions = &problem.surface.positions;
             let rest = |handle: &Handle| handle.vertices.iter().map(|&own| positions[own as usize]).collect();
             bound.world_rest = bound.handles.iter().map(rest).collect();
+            // A section follows its neighbours, so its turn against the far end is no sign of a narrow limb.
+            if let Some(limit) = &mut bound.turn_limit {
+                let is_whole = sections.are_whole();
+                limit.retain(|handle| is_whole[usize::from(handle)]);
+            }
             bound.sections = Some(sections);
         }
         let of_sections = std::mem::take(&mut bound.of_binding);

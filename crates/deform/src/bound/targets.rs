@@ -144,11 +144,8 @@ impl Bound {
             .extend(of_binding.filter(|warning| !warning.is_void(placed)).cloned());
         self.binding_warnings = self.warnings.len();
         let blind = self.method.blind_to(&self.motions);
-        // A section follows its neighbours, so its turn against the far end is no sign of a narrow limb.
-        let whole = self.sections.as_ref().map(Sections::are_whole);
-        let counted = |handle: u16| whole.as_ref().is_none_or(|whole| whole[usize::from(handle)]);
         let limit = self.turn_limit.as_ref();
-        let limit = limit.and_then(|limit| limit.warning(&self.handles, &self.motions, counted));
+        let limit = limit.and_then(|limit| limit.warning(&self.handles, &self.motions));
         let of_targets = self.about_handles(blind.into_iter().chain(limit).collect());
         self.warnings.extend(of_targets);
         self.target_warnings = self.warnings.len();

@@ -86,21 +86,30 @@ pub(crate) fn ends_among(handles: &[u16], is_held: bool) -> impl Iterator<Item =
 const ROOM_DEGREES: f64 = 5.0;
 
 impl TurnLimit {
-    /// A sentence about two ends whose turns differ by more than the method's limit. Handles that are not `counted`
-    /// have no part in it.
-    pub fn warning(&self, handles: &[Handle], motions: &[Motion], counted: impl Fn(u16) -> bool) -> Option<Warning> {
+    /// Forgets the ends at other handles.
+    pub fn retain(&mut self, is_counted: impl Fn(u16) -> bool) {
+        self.ends
+            .retain(|(handle, other)| is_counted(*handle) && other.is_none_or(&is_counted));
+    }
+
+    /// A sentence about two ends whose turns differ by more than the method's limit.
+    pub fn warning(&self, handles: &[Handle], motions: &[Motion]) -> Option<Warning> {
         let Followed {
             most_degrees,
             beyond,
             necks_degrees,
         } = self.followed;
-        let turn = |number: u16| {
-            let (handle, motion) = (&handles[usize::from(number)], &motions[usize::from(number)]);
-            DQuat::from_scaled_axis(Polar::of(&handle.linear(motion)).turn_rad)
-        };
+        if self.ends.is_empty() {
+            return None;
+        }
+        // Once for each handle: there may be hundreds, and many more pairs of them.
+        let of_handles = handles.iter().zip(motions);
+        let turns: Vec<DQuat> = of_handles
+            .map(|(handle, motion)| DQuat::from_scaled_axis(Polar::of(&handle.linear(motion)).turn_rad))
+            .collect();
+        let turn = |number: u16| turns[usize::from(number)];
         let mut worst = (0.0, 0);
-        let own = |ends: &&Ends| counted(ends.0) && ends.1.is_none_or(&counted);
-        for (number, other) in self.ends.iter().filter(own) {
+        for (number, other) in &self.ends {
             let beyond = other.map_or(DQuat::IDENTITY, turn);
             let degrees = degrees_between(turn(*number), beyond);
             if degrees > worst.0 {

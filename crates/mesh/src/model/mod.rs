@@ -36,8 +36,10 @@ pub struct Model {
     pub objects: Vec<Object>,
     /// The options with which its vertices were joined.
     pub weld: WeldOptions,
-    /// [`Self::bounds`] and [`Self::bounds_without_specks`], measured once: a view asks for them at every frame.
-    measured: [OnceLock<Option<Bounds>>; 2],
+    /// [`Self::bounds`], measured once, because a view asks at every frame: nothing moves a model's vertices.
+    bounds: OnceLock<Option<Bounds>>,
+    /// [`Self::bounds_without_specks`], likewise.
+    bounds_without_specks: OnceLock<Option<Bounds>>,
 }
 
 impl Model {
@@ -69,7 +71,8 @@ impl Model {
             inside_out,
             objects: Vec::new(),
             weld: *options,
-            measured: Default::default(),
+            bounds: OnceLock::new(),
+            bounds_without_specks: OnceLock::new(),
         };
         // Whoever welds waits anyway.
         model.bounds_without_specks();
@@ -79,7 +82,7 @@ impl Model {
     /// The bounding box of the vertices that kept triangles use, or of all bare points if there is no triangle; `None`
     /// for an empty surface.
     pub fn bounds(&self) -> Option<Bounds> {
-        *self.measured[0].get_or_init(|| bounding_box(self.main_positions()))
+        *self.bounds.get_or_init(|| bounding_box(self.main_positions()))
     }
 
     /// For each connected part, true if it has fewer vertices than this share (0 to 1) of the largest part's. Bare
@@ -137,10 +140,12 @@ impl Model {
             let vertices = self.vertices_without_specks();
             Bounds::around(vertices.map(|v| self.surface.positions[v.index()]))
         };
-        *self.measured[1].get_or_init(|| match self.specks().contains(&true) {
-            true => without_specks(),
-            false => self.bounds(),
-        })
+        *self
+            .bounds_without_specks
+            .get_or_init(|| match self.specks().contains(&true) {
+                true => without_specks(),
+                false => self.bounds(),
+            })
     }
 
     /// The vertices of [`Self::main_positions`] that belong to no speck.
